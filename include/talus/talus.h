@@ -1,0 +1,15 @@
+/* Talus: rigid-body physics in one block of memory. This header has all the others. */
+#ifndef TALUS_H
+#define TALUS_H
+
+#include "talus/body.h"
+#include "talus/events.h"
+#include "talus/hull.h"
+#include "talus/joint.h"
+#include "talus/loop.h"
+#include "talus/shape.h"
+#include "talus/types.h"
+#include "talus/version.h"
+#include "talus/world.h"
+
+#endif
