@@ -38,7 +38,7 @@ static uint32_t two_over_pi_bits(uint32_t at) {
 static float reduce_large(float x, uint32_t *quarter) {
     uint32_t u = bits_of(x);
     uint64_t m = (u & 0x7fffffu) | 0x800000u; /* x = m 2^(e - 150) */
-    uint32_t at = (u >> 23) - 120u;           /* m times bit `at` weighs 4 quarter turns times m 2^-1 */
+    uint32_t at = (u >> 23) - 120u;           /* x times the bit before is 4 m quarter turns */
     uint64_t p = (m * two_over_pi_bits(at) << 32) + m * two_over_pi_bits(at + 32) +
                  (m * two_over_pi_bits(at + 64) >> 32); /* quarter turns modulo 4, in units of 2^-62 */
     uint64_t q = (p + ((uint64_t)1 << 61)) >> 62;
