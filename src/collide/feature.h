@@ -1,0 +1,63 @@
+/* The faces, edges and points by which two shapes meet, and the manifold between them. Metres, in the query's frame. */
+#ifndef TL_FEATURE_H
+#define TL_FEATURE_H
+
+#include "collide/support.h"
+
+#define TL_FEATURE_POINTS 32 /* faces of more corners are thinned out */
+
+/* Closer to parallel than this a face stands for a shape along a normal: the cosine of 10 degrees. */
+#define TL_FACE_COS 0.985f
+/* The sine of 10 degrees: closer to the plane across the normal than this an edge stands for a shape. */
+#define TL_EDGE_SIN 0.17f
+
+typedef struct tl_feature {
+    uint32_t count;                      /* 1: a point, 2: a segment, more: a convex polygon */
+    talus_vec3 normal;                   /* outward unit normal of a polygon */
+    talus_vec3 point[TL_FEATURE_POINTS]; /* counter-clockwise seen from outside */
+    uint16_t vertex[TL_FEATURE_POINTS];  /* numbers of the points */
+    uint16_t edge[TL_FEATURE_POINTS];    /* numbers of the edges from each point to the next */
+} tl_feature;
+
+/* What supports a core along the unit vector n (query frame), pushed out by the core's radius. With `strict` a face or
+ * edge counts only near to square with n; else the face that is closest to square with it wherever there are faces. */
+void tl_feature_find(const tl_core *core, talus_vec3 n, int strict, tl_feature *out);
+
+/* Face `axis` (0..2) of a box, the positive one or the negative one. */
+void tl_feature_box_face(const tl_core *core, int axis, int positive, tl_feature *out);
+/* A face and an edge of a hull. */
+void tl_feature_hull_face(const tl_core *core, uint32_t face, tl_feature *out);
+
+/* A way to meet: a unit normal from A to B and the points of A and B that it was found with. */
+typedef struct tl_touch {
+    talus_vec3 normal;
+    float separation;
+    talus_vec3 point_a, point_b;
+} tl_touch;
+
+/* The points at most `margin` apart where two features meet along the touch's normal; the touch's own points are among
+ * them if no other is as near to within `tolerance` (m). */
+void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch *touch, float margin, float tolerance,
+                       tl_manifold *out);
+
+/* Finds the features of both cores along the touch's normal and builds the manifold. */
+void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out);
+
+/* A manifold of one point. */
+void tl_manifold_single(const tl_touch *touch, uint32_t id, tl_manifold *out);
+
+/* Numbers for points: of a vertex of B on A, of a vertex of A on B, of two edges, and of two points. */
+static inline uint32_t tl_point_id(uint32_t kind, uint32_t a, uint32_t b) {
+    return kind << 30 | (a & 0x7fffu) << 15 | (b & 0x7fffu);
+}
+#define TL_ID_POINTS 0u
+#define TL_ID_VERTEX_B 1u
+#define TL_ID_VERTEX_A 2u
+#define TL_ID_EDGES 3u
+
+/* What separations of two shapes may differ by from rounding and from features that are all but alike. */
+static inline float tl_touch_tolerance(const tl_core *a, const tl_core *b) {
+    return 5e-6f * tl_min(a->size, b->size) + 2.5e-7f * tl_max(a->size, b->size);
+}
+
+#endif

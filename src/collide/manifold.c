@@ -1,0 +1,379 @@
+/* Contact points of two features along a normal: the face squarer with the normal is kept whole, the other shape's face
+ * or edge is clipped against its sides (Sutherland & Hodgman, Reentrant Polygon Clipping, 1974), and of many points
+ * four are kept: one of the deepest, then those that span the most area. Point numbers come from vertices and edges
+ * alone, so that they outlive a change of roles. Metres. */
+#include "collide/feature.h"
+
+#include <string.h>
+
+#define MAX_CLIP (2u * TL_FEATURE_POINTS)
+/* The side planes stand this far outside of the face, of the smaller feature's extent: faces that fit one another
+ * exactly keep their corners while they jitter. */
+#define SIDE_SLACK 1e-3f
+/* A point this much less deep must be that times further out to be kept instead. */
+#define GAP_WEIGHT 4.0f
+#define FROM_REFERENCE 0x8000u
+
+typedef struct candidate {
+    talus_vec3 p; /* midway */
+    float gap;
+    uint32_t id;
+} candidate;
+
+typedef struct clip_buffer {
+    talus_vec3 p[MAX_CLIP];
+    uint16_t
+        label[MAX_CLIP]; /* of the edge from each point to the next: the incident's, or the reference's + the bit */
+    uint32_t count;
+} clip_buffer;
+
+static float extent(const tl_feature *f) {
+    talus_vec3 d = tl_sub(f->point[f->count / 2u], f->point[0]);
+    return tl_max(tl_max(tl_abs(d.x), tl_abs(d.y)), tl_abs(d.z));
+}
+
+/* Inside of a side of the reference is where dot(side, x) + offset >= 0. */
+static float side_plane(const tl_feature *f, uint32_t i, talus_vec3 outward, float slack, talus_vec3 *side) {
+    uint32_t j = i + 1u < f->count ? i + 1u : 0u;
+    *side = tl_cross(outward, tl_sub(f->point[j], f->point[i]));
+    /* the sum of the sizes stands for the length, within a factor of 1.74 */
+    float length = tl_abs(side->x) + tl_abs(side->y) + tl_abs(side->z);
+    return slack * length - tl_dot(*side, f->point[i]);
+}
+
+/* Cuts the polygon by one side; 0 if nothing is left. */
+static int cut(const clip_buffer *in, clip_buffer *out, talus_vec3 side, float offset, uint32_t side_label) {
+    float d[MAX_CLIP];
+    uint32_t inside = 0;
+    for (uint32_t k = 0; k < in->count; ++k) {
+        d[k] = tl_dot(side, in->p[k]) + offset;
+        inside += d[k] >= 0.0f;
+    }
+    if (inside == in->count) {
+        *out = *in;
+        return 1;
+    }
+    out->count = 0;
+    for (uint32_t k = 0; k < in->count && inside > 0; ++k) {
+        uint32_t next = k + 1u < in->count ? k + 1u : 0u;
+        int here = d[k] >= 0.0f, there = d[next] >= 0.0f;
+        if (here && out->count < MAX_CLIP) {
+            out->p[out->count] = in->p[k];
+            out->label[out->count++] = in->label[k];
+        }
+        if (here != there && out->count < MAX_CLIP) {
+            float t = d[k] / (d[k] - d[next]);
+            out->p[out->count] = tl_mad(in->p[k], t, tl_sub(in->p[next], in->p[k]));
+            out->label[out->count++] = here ? (uint16_t)(FROM_REFERENCE | side_label) : in->label[k];
+        }
+    }
+    return out->count > 0;
+}
+
+/* The number of the point between two edges of a clipped polygon. */
+static uint32_t corner_id(const tl_feature *ref, const tl_feature *inc, int ref_is_a, uint32_t before, uint32_t after) {
+    uint32_t i = before & ~FROM_REFERENCE, j = after & ~FROM_REFERENCE;
+    int ref_before = (before & FROM_REFERENCE) != 0, ref_after = (after & FROM_REFERENCE) != 0;
+    if (ref_before != ref_after) {
+        uint32_t re = ref->edge[ref_before ? i : j], ie = inc->edge[ref_before ? j : i];
+        return tl_point_id(TL_ID_EDGES, ref_is_a ? re : ie, ref_is_a ? ie : re);
+    }
+    const tl_feature *own = ref_before ? ref : inc;
+    int of_a = ref_before == ref_is_a;
+    uint32_t i_next = i + 1u < own->count ? i + 1u : 0u, j_next = j + 1u < own->count ? j + 1u : 0u;
+    uint32_t kind = of_a ? TL_ID_VERTEX_A : TL_ID_VERTEX_B;
+    if (i_next == j || j_next == i) {
+        return tl_point_id(kind, own->vertex[i_next == j ? j : i], 0);
+    }
+    /* edges that do not follow one another: what lay between them was too small to see */
+    return tl_point_id(kind, own->edge[i], 1u + own->edge[j]);
+}
+
+/* How far x is in front of the reference's plane along the normal. */
+static void measure(const tl_feature *ref, int ref_is_a, talus_vec3 n, float inverse, float margin, talus_vec3 x,
+                    uint32_t id, candidate *c, uint32_t *count) {
+    float gap = tl_dot(ref->normal, tl_sub(x, ref->point[0])) * inverse;
+    if (gap <= margin) {
+        c[*count].gap = gap;
+        c[*count].p = tl_mad(x, ref_is_a ? -0.5f * gap : 0.5f * gap, n);
+        c[*count].id = id;
+        ++*count;
+    }
+}
+
+static uint32_t clip_polygon(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
+                             candidate *out) {
+    clip_buffer buffer[2];
+    clip_buffer *from = &buffer[0], *to = &buffer[1];
+    talus_vec3 outward = ref_is_a ? n : tl_neg(n);
+    float slack = SIDE_SLACK * tl_min(extent(ref), extent(inc));
+    from->count = inc->count;
+    for (uint32_t k = 0; k < inc->count; ++k) {
+        from->p[k] = inc->point[k];
+        from->label[k] = (uint16_t)k;
+    }
+    for (uint32_t i = 0; i < ref->count; ++i) {
+        talus_vec3 side;
+        float offset = side_plane(ref, i, outward, slack, &side);
+        if (!cut(from, to, side, offset, i)) {
+            return 0;
+        }
+        clip_buffer *swap = from;
+        from = to;
+        to = swap;
+    }
+    float inverse = 1.0f / tl_dot(ref->normal, outward);
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < from->count; ++k) {
+        uint32_t before = from->label[k > 0 ? k - 1u : from->count - 1u];
+        measure(ref, ref_is_a, n, inverse, margin, from->p[k], corner_id(ref, inc, ref_is_a, before, from->label[k]),
+                out, &count);
+    }
+    return count;
+}
+
+static uint32_t clip_segment(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
+                             candidate *out) {
+    talus_vec3 outward = ref_is_a ? n : tl_neg(n);
+    float slack = SIDE_SLACK * tl_min(extent(ref), extent(inc)), low = 0.0f, high = 1.0f;
+    uint32_t kind = ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A;
+    uint32_t low_id = tl_point_id(kind, inc->vertex[0], 0), high_id = tl_point_id(kind, inc->vertex[1], 0);
+    for (uint32_t i = 0; i < ref->count; ++i) {
+        talus_vec3 side;
+        float offset = side_plane(ref, i, outward, slack, &side);
+        float d0 = tl_dot(side, inc->point[0]) + offset, d1 = tl_dot(side, inc->point[1]) + offset;
+        uint32_t re = ref->edge[i], ie = inc->edge[0];
+        uint32_t id = tl_point_id(TL_ID_EDGES, ref_is_a ? re : ie, ref_is_a ? ie : re);
+        if (d0 < 0.0f && d1 < 0.0f) {
+            return 0;
+        }
+        if (d0 < 0.0f || d1 < 0.0f) {
+            float t = d0 / (d0 - d1);
+            if (d0 < 0.0f && t > low) {
+                low = t;
+                low_id = id;
+            } else if (d1 < 0.0f && t < high) {
+                high = t;
+                high_id = id;
+            }
+        }
+    }
+    if (low > high) {
+        return 0;
+    }
+    float inverse = 1.0f / tl_dot(ref->normal, outward);
+    talus_vec3 along = tl_sub(inc->point[1], inc->point[0]);
+    uint32_t count = 0;
+    measure(ref, ref_is_a, n, inverse, margin, tl_mad(inc->point[0], low, along), low_id, out, &count);
+    if (high > low) {
+        measure(ref, ref_is_a, n, inverse, margin, tl_mad(inc->point[0], high, along), high_id, out, &count);
+    }
+    return count;
+}
+
+/* Two segments that run alike, within 3 degrees, meet in the two ends of what they share. */
+static uint32_t meet_segments(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, candidate *out) {
+    talus_vec3 u = tl_sub(a->point[1], a->point[0]), w = tl_sub(b->point[1], b->point[0]);
+    float uu = tl_length2(u), ww = tl_length2(w);
+    if (!(tl_length2(tl_cross(u, w)) <= 0.0025f * uu * ww) || !(uu > 0.0f)) {
+        return 0;
+    }
+    float t[2] = {0.0f, 1.0f};
+    uint32_t id[2] = {tl_point_id(TL_ID_VERTEX_A, a->vertex[0], 0), tl_point_id(TL_ID_VERTEX_A, a->vertex[1], 0)};
+    float s0 = tl_dot(u, tl_sub(b->point[0], a->point[0])) / uu, s1 = tl_dot(u, tl_sub(b->point[1], a->point[0])) / uu;
+    uint32_t first = s0 <= s1 ? 0u : 1u;
+    float low = tl_min(s0, s1), high = tl_max(s0, s1);
+    if (low > t[0]) {
+        t[0] = low;
+        id[0] = tl_point_id(TL_ID_VERTEX_B, b->vertex[first], 0);
+    }
+    if (high < t[1]) {
+        t[1] = high;
+        id[1] = tl_point_id(TL_ID_VERTEX_B, b->vertex[1u - first], 0);
+    }
+    if (!(t[1] - t[0] > SIDE_SLACK)) {
+        return 0;
+    }
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < 2; ++i) {
+        talus_vec3 p = tl_mad(a->point[0], t[i], u);
+        float s = tl_clamp((t[i] - s0) / (s1 - s0), 0.0f, 1.0f);
+        talus_vec3 q = tl_mad(b->point[0], s, w);
+        float gap = tl_dot(n, tl_sub(q, p));
+        if (gap <= margin) {
+            out[count].p = tl_scale(tl_add(p, q), 0.5f);
+            out[count].gap = gap;
+            out[count].id = id[i];
+            ++count;
+        }
+    }
+    return count;
+}
+
+static uint32_t best_area(const candidate *c, uint32_t count, const uint32_t *chosen, uint32_t kept, talus_vec3 n,
+                          float least, float scale) {
+    uint32_t best = count;
+    float most = scale * scale * 1e-6f;
+    for (uint32_t i = 0; i < count; ++i) {
+        talus_vec3 p0 = c[chosen[0]].p, d = tl_sub(c[i].p, p0);
+        float area = 0.0f;
+        if (kept == 2) {
+            area = tl_abs(tl_dot(n, tl_cross(tl_sub(c[chosen[1]].p, p0), d)));
+        } else {
+            /* outside of the triangle by the side that it is furthest across */
+            talus_vec3 p1 = c[chosen[1]].p, p2 = c[chosen[2]].p;
+            float whole = tl_dot(n, tl_cross(tl_sub(p1, p0), tl_sub(p2, p0))), turn = whole >= 0.0f ? -1.0f : 1.0f;
+            float s0 = turn * tl_dot(n, tl_cross(tl_sub(p1, p0), d));
+            float s1 = turn * tl_dot(n, tl_cross(tl_sub(p2, p1), tl_sub(c[i].p, p1)));
+            float s2 = turn * tl_dot(n, tl_cross(tl_sub(p0, p2), tl_sub(c[i].p, p2)));
+            area = tl_max(s0, tl_max(s1, s2));
+        }
+        area -= GAP_WEIGHT * (c[i].gap - least) * scale;
+        if (area > most) {
+            most = area;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Four of many candidates into the front of the array. */
+static uint32_t reduce(candidate *c, uint32_t count, talus_vec3 n, float tolerance) {
+    uint32_t deepest = 0, chosen[4] = {0, 0, 0, 0}, kept = 1;
+    float reach2 = 0.0f;
+    for (uint32_t i = 1; i < count; ++i) {
+        deepest = c[i].gap < c[deepest].gap ? i : deepest;
+        reach2 = tl_max(reach2, tl_length2(tl_sub(c[i].p, c[0].p)));
+    }
+    float least = c[deepest].gap, reach = sqrtf(reach2);
+    /* of points about as deep the one of the lowest number, so that the choice does not flicker */
+    chosen[0] = deepest;
+    for (uint32_t i = 0; i < count; ++i) {
+        chosen[0] = c[i].gap <= least + 1e-3f * reach && c[i].id < c[chosen[0]].id ? i : chosen[0];
+    }
+    float most = 0.0f;
+    for (uint32_t i = 0; i < count; ++i) {
+        float score = tl_length(tl_sub(c[i].p, c[chosen[0]].p)) - GAP_WEIGHT * (c[i].gap - least);
+        if (score > most) {
+            most = score;
+            chosen[1] = i;
+            kept = 2;
+        }
+    }
+    while (kept >= 2 && kept < 4) {
+        uint32_t next = best_area(c, count, chosen, kept, n, least, most);
+        if (next == count) {
+            break;
+        }
+        chosen[kept++] = next;
+    }
+    float found = c[chosen[0]].gap;
+    uint32_t nearest = 0;
+    float near2 = 3e38f;
+    for (uint32_t i = 0; i < kept; ++i) {
+        found = tl_min(found, c[chosen[i]].gap);
+        float d2 = tl_length2(tl_sub(c[chosen[i]].p, c[deepest].p));
+        nearest = d2 < near2 ? i : nearest;
+        near2 = tl_min(near2, d2);
+    }
+    if (found > least + tolerance) {
+        chosen[kept < 4 ? kept++ : nearest] = deepest;
+    }
+    candidate four[4];
+    for (uint32_t i = 0; i < kept; ++i) {
+        four[i] = c[chosen[i]];
+    }
+    memcpy(c, four, kept * sizeof four[0]);
+    return kept;
+}
+
+static uint32_t touch_id(const tl_feature *a, const tl_feature *b) {
+    if (a->count == 2 && b->count == 2) {
+        return tl_point_id(TL_ID_EDGES, a->edge[0], b->edge[0]);
+    }
+    return tl_point_id(TL_ID_POINTS, a->count == 1 ? a->vertex[0] : 0x7fffu, b->count == 1 ? b->vertex[0] : 0x7fffu);
+}
+
+/* The touch's own point, where the features gave none as deep. */
+static uint32_t add_touch(const tl_touch *touch, uint32_t id, float tolerance, candidate *c, uint32_t count) {
+    uint32_t near = count;
+    float near2 = 3e38f;
+    candidate own;
+    own.p = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
+    own.gap = touch->separation;
+    own.id = id;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (c[i].gap <= touch->separation + tolerance) {
+            return count;
+        }
+        float d2 = tl_length2(tl_sub(c[i].p, own.p));
+        near = d2 < near2 ? i : near;
+        near2 = tl_min(near2, d2);
+    }
+    if (count < TL_MANIFOLD_POINTS) {
+        near = count++;
+    }
+    c[near] = own;
+    return count;
+}
+
+void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch *touch, float margin, float tolerance,
+                       tl_manifold *out) {
+    candidate c[MAX_CLIP];
+    uint32_t count = 0;
+    talus_vec3 n = touch->normal;
+    int a_face = a->count >= 3, b_face = b->count >= 3;
+    if (a_face && b_face) {
+        a_face = tl_dot(a->normal, n) >= -tl_dot(b->normal, n) - 1e-3f;
+        b_face = !a_face;
+    }
+    if (a_face || b_face) {
+        const tl_feature *ref = a_face ? a : b, *inc = a_face ? b : a;
+        if (tl_abs(tl_dot(ref->normal, n)) < 0.1f) {
+            count = 0;
+        } else if (inc->count >= 3) {
+            count = clip_polygon(ref, inc, a_face, n, margin, c);
+        } else if (inc->count == 2) {
+            count = clip_segment(ref, inc, a_face, n, margin, c);
+        }
+    } else if (a->count == 2 && b->count == 2) {
+        count = meet_segments(a, b, n, margin, c);
+    }
+    if (count > TL_MANIFOLD_POINTS) {
+        count = reduce(c, count, n, tolerance);
+    }
+    count = add_touch(touch, touch_id(a, b), tolerance, c, count);
+    out->normal = n;
+    out->count = count;
+    for (uint32_t i = 0; i < count; ++i) {
+        out->point[i].position = c[i].p;
+        out->point[i].separation = c[i].gap;
+        uint32_t id = c[i].id;
+        for (uint32_t k = 0; k < i; ++k) {
+            if (out->point[k].id == id) {
+                id += 0x4001u;
+                k = UINT32_MAX;
+            }
+        }
+        out->point[i].id = id;
+    }
+}
+
+void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out) {
+    tl_feature fa, fb;
+    talus_vec3 n = touch->normal, back = tl_neg(n);
+    tl_feature_find(a, n, 1, &fa);
+    tl_feature_find(b, back, fa.count < 3, &fb);
+    if (fa.count < 3 && fb.count >= 3) {
+        tl_feature_find(a, n, 0, &fa);
+    }
+    tl_manifold_build(&fa, &fb, touch, margin, tl_touch_tolerance(a, b), out);
+}
+
+void tl_manifold_single(const tl_touch *touch, uint32_t id, tl_manifold *out) {
+    out->normal = touch->normal;
+    out->count = 1;
+    out->point[0].position = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
+    out->point[0].separation = touch->separation;
+    out->point[0].id = id;
+}

@@ -1,0 +1,219 @@
+/* Support points of convex cores, and boxes around shapes. A hull of few vertices is scanned eight at a time; on a
+ * large one the search climbs from vertex to neighbour (van den Bergen, Collision Detection in Interactive 3D
+ * Environments, 4.3.4). Lengths in metres. */
+#include "collide/support.h"
+
+/* Hulls of more vertices than this are climbed, not scanned. */
+#define SCAN_LIMIT 64u
+
+void tl_core_init(tl_core *core, const tl_convex *shape, const talus_pose *pose) {
+    const talus_geometry *g = &shape->geometry;
+    core->placed = pose != NULL;
+    if (pose != NULL) {
+        core->r = tl_mat3_from_quat(pose->rotation);
+        core->t = pose->position;
+    }
+    core->half_height = 0.0f;
+    core->top = 0.0f;
+    core->bottom = 0.0f;
+    core->radius = 0.0f;
+    core->half = tl_v(0.0f, 0.0f, 0.0f);
+    core->hull = NULL;
+    switch (g->type) {
+    case TALUS_SPHERE:
+        core->kind = TL_CORE_POINT;
+        core->radius = g->radius;
+        core->size = g->radius;
+        break;
+    case TALUS_CAPSULE:
+        core->radius = tl_min(g->radius_top, g->radius_bottom);
+        core->top = g->radius_top - core->radius;
+        core->bottom = g->radius_bottom - core->radius;
+        core->half_height = g->half_height;
+        core->kind = core->top != core->bottom ? TL_CORE_DROP : TL_CORE_SEGMENT;
+        core->size = g->half_height + tl_max(g->radius_top, g->radius_bottom);
+        break;
+    case TALUS_CYLINDER:
+        core->kind = TL_CORE_FRUSTUM;
+        core->top = g->radius_top;
+        core->bottom = g->radius_bottom;
+        core->half_height = g->half_height;
+        core->size = g->half_height + tl_max(g->radius_top, g->radius_bottom);
+        break;
+    case TALUS_BOX:
+        core->kind = TL_CORE_BOX;
+        core->half = g->half;
+        core->size = tl_length(g->half);
+        break;
+    case TALUS_HULL:
+    case TALUS_SHAPE_TYPE_COUNT:
+    default:
+        core->kind = TL_CORE_HULL;
+        core->hull = shape->hull;
+        core->size = tl_length(shape->hull->centroid) + shape->hull->outer_radius;
+        break;
+    }
+}
+
+static uint32_t climb(const talus_hull *hull, talus_vec3 d, uint32_t v) {
+    const float *x = tl_hull_x(hull), *y = tl_hull_y(hull), *z = tl_hull_z(hull);
+    const tl_half_edge *edges = tl_hull_edges(hull);
+    const uint16_t *vertex_edge = tl_hull_vertex_edge(hull);
+    float best = x[v] * d.x + y[v] * d.y + z[v] * d.z;
+    for (uint32_t steps = 0; steps < hull->vertex_count; ++steps) {
+        uint32_t first = vertex_edge[v], e = first, to = v;
+        do {
+            uint32_t twin = tl_hull_twin(e), u = edges[twin].origin;
+            float s = x[u] * d.x + y[u] * d.y + z[u] * d.z;
+            if (s > best) {
+                best = s;
+                to = u;
+            }
+            e = edges[twin].next;
+        } while (e != first);
+        if (to == v) {
+            break;
+        }
+        v = to;
+    }
+    return v;
+}
+
+static uint32_t scan(const talus_hull *hull, talus_vec3 d) {
+    const float *x = tl_hull_x(hull), *y = tl_hull_y(hull), *z = tl_hull_z(hull);
+    float best[8];
+    int32_t at[8];
+    for (int k = 0; k < 8; ++k) {
+        best[k] = x[k] * d.x + y[k] * d.y + z[k] * d.z;
+        at[k] = k;
+    }
+    for (uint32_t i = 8; i < hull->vertex_stride; i += 8) {
+        for (int k = 0; k < 8; ++k) {
+            float s = x[i + (uint32_t)k] * d.x + y[i + (uint32_t)k] * d.y + z[i + (uint32_t)k] * d.z;
+            int32_t here = (int32_t)i + k;
+            at[k] = s > best[k] ? here : at[k];
+            best[k] = s > best[k] ? s : best[k];
+        }
+    }
+    /* the lowest index among the best, which is what a plain scan would find */
+    for (int k = 1; k < 8; ++k) {
+        if (best[k] > best[0] || (best[k] == best[0] && at[k] < at[0])) {
+            best[0] = best[k];
+            at[0] = at[k];
+        }
+    }
+    uint32_t v = (uint32_t)at[0];
+    return v < hull->vertex_count ? v : hull->vertex_count - 1u;
+}
+
+uint32_t tl_hull_support(const talus_hull *hull, talus_vec3 direction, uint32_t start) {
+    if (hull->vertex_count > SCAN_LIMIT) {
+        return climb(hull, direction, start < hull->vertex_count ? start : 0u);
+    }
+    return scan(hull, direction);
+}
+
+static talus_vec3 frustum_support(const tl_core *core, talus_vec3 d) {
+    float s = tl_max(tl_abs(d.x), tl_abs(d.z));
+    float x = 0.0f, z = 0.0f, radial = 0.0f;
+    if (s > 1e-30f) {
+        float u = d.x / s, w = d.z / s, l = sqrtf(u * u + w * w);
+        x = u / l;
+        z = w / l;
+        radial = s * l;
+    }
+    int top = core->half_height * d.y + core->top * radial >= core->bottom * radial - core->half_height * d.y;
+    float r = top ? core->top : core->bottom;
+    return tl_v(x * r, top ? core->half_height : -core->half_height, z * r);
+}
+
+static talus_vec3 drop_support(const tl_core *core, talus_vec3 d) {
+    talus_vec3 u = tl_normalize_or(d, tl_v(0.0f, 1.0f, 0.0f));
+    int top = core->half_height * u.y + core->top >= core->bottom - core->half_height * u.y;
+    talus_vec3 p = tl_scale(u, top ? core->top : core->bottom);
+    p.y += top ? core->half_height : -core->half_height;
+    return p;
+}
+
+talus_vec3 tl_core_support_local(const tl_core *core, talus_vec3 d, uint32_t *index) {
+    switch (core->kind) {
+    case TL_CORE_SEGMENT:
+        *index = d.y >= 0.0f;
+        return tl_v(0.0f, d.y >= 0.0f ? core->half_height : -core->half_height, 0.0f);
+    case TL_CORE_DROP:
+        *index = 0;
+        return drop_support(core, d);
+    case TL_CORE_FRUSTUM:
+        *index = 0;
+        return frustum_support(core, d);
+    case TL_CORE_BOX:
+        *index = (d.x >= 0.0f ? 1u : 0u) | (d.y >= 0.0f ? 2u : 0u) | (d.z >= 0.0f ? 4u : 0u);
+        return tl_box_corner(core->half, *index);
+    case TL_CORE_HULL:
+        *index = tl_hull_support(core->hull, d, *index);
+        return tl_hull_point(core->hull, *index);
+    case TL_CORE_POINT:
+    default:
+        *index = 0;
+        return tl_v(0.0f, 0.0f, 0.0f);
+    }
+}
+
+talus_vec3 tl_core_support(const tl_core *core, talus_vec3 direction, uint32_t *index) {
+    return tl_core_place(core, tl_core_support_local(core, tl_core_rotate_back(core, direction), index));
+}
+
+static talus_aabb aabb_around(talus_vec3 center, talus_vec3 reach) {
+    talus_aabb box = {tl_sub(center, reach), tl_add(center, reach)};
+    return box;
+}
+
+static talus_aabb hull_aabb(const talus_hull *hull, const talus_pose *pose, const talus_mat3 *m) {
+    if (hull->vertex_count > SCAN_LIMIT) {
+        talus_vec3 c = tl_scale(tl_add(hull->bounds.lower, hull->bounds.upper), 0.5f);
+        talus_vec3 h = tl_scale(tl_sub(hull->bounds.upper, hull->bounds.lower), 0.5f);
+        talus_vec3 reach =
+            tl_add(tl_add(tl_abs3(tl_scale(m->x, h.x)), tl_abs3(tl_scale(m->y, h.y))), tl_abs3(tl_scale(m->z, h.z)));
+        return aabb_around(tl_add(tl_mat3_mul(m, c), pose->position), reach);
+    }
+    talus_vec3 low = tl_mat3_mul(m, tl_hull_point(hull, 0)), high = low;
+    for (uint32_t i = 1; i < hull->vertex_count; ++i) {
+        talus_vec3 p = tl_mat3_mul(m, tl_hull_point(hull, i));
+        low = tl_min3(low, p);
+        high = tl_max3(high, p);
+    }
+    talus_aabb box = {tl_add(low, pose->position), tl_add(high, pose->position)};
+    return box;
+}
+
+talus_aabb tl_convex_aabb(const tl_convex *shape, const talus_pose *pose) {
+    const talus_geometry *g = &shape->geometry;
+    talus_mat3 m = tl_mat3_from_quat(pose->rotation);
+    talus_vec3 axis = tl_scale(m.y, g->half_height);
+    talus_vec3 top = tl_add(pose->position, axis), bottom = tl_sub(pose->position, axis);
+    switch (g->type) {
+    case TALUS_SPHERE:
+        return aabb_around(pose->position, tl_v(g->radius, g->radius, g->radius));
+    case TALUS_CAPSULE:
+    case TALUS_CYLINDER: {
+        talus_vec3 reach = tl_v(1.0f, 1.0f, 1.0f);
+        if (g->type == TALUS_CYLINDER) {
+            /* of a disc of radius 1 across the axis */
+            talus_vec3 s = tl_sub(reach, tl_mul(m.y, m.y));
+            reach = tl_v(sqrtf(tl_max(s.x, 0.0f)), sqrtf(tl_max(s.y, 0.0f)), sqrtf(tl_max(s.z, 0.0f)));
+        }
+        talus_vec3 rt = tl_scale(reach, g->radius_top), rb = tl_scale(reach, g->radius_bottom);
+        talus_aabb box = {tl_min3(tl_sub(top, rt), tl_sub(bottom, rb)), tl_max3(tl_add(top, rt), tl_add(bottom, rb))};
+        return box;
+    }
+    case TALUS_BOX: {
+        talus_vec3 reach = tl_add(tl_add(tl_abs3(tl_scale(m.x, g->half.x)), tl_abs3(tl_scale(m.y, g->half.y))),
+                                  tl_abs3(tl_scale(m.z, g->half.z)));
+        return aabb_around(pose->position, reach);
+    }
+    case TALUS_HULL:
+    case TALUS_SHAPE_TYPE_COUNT:
+    default:
+        return hull_aabb(shape->hull, pose, &m);
+    }
+}
