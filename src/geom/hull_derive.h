@@ -1,0 +1,15 @@
+/* What a hull's blob says twice: the numbers of its header that follow from its arrays. The builder writes them and the
+ * validator works them out again and compares bits. */
+#ifndef TL_HULL_DERIVE_H
+#define TL_HULL_DERIVE_H
+
+#include "geom/hull.h"
+
+/* Writes volume, centroid, inertia, bounds and radii of h into *out (a copy of h's header, arrays being h's). */
+void tl_hull_derive(const talus_hull *h, talus_hull *out);
+/* FNV-1a over the 32-bit words after the header's first 16 bytes. `bytes` is a multiple of 32. */
+uint32_t tl_hull_checksum(const void *blob, uint32_t bytes);
+/* Sets strides, offsets and bytes from the three counts. The counts are at most 65536 each. */
+void tl_hull_layout(talus_hull *h);
+
+#endif
