@@ -9,6 +9,15 @@
 
 #define TL_LANES_NAME "wasm"
 
+/* Clang before 16 folds a scalar load and its splat into one v128.load32_splat, which may then drift past later stores.
+ * The barrier keeps them apart. Vectors that its optimiser makes of plain C are not safe from it: there the build needs
+ * -fno-vectorize -fno-slp-vectorize. */
+#if defined(__clang__) && __clang_major__ < 16
+#define TL_WASM_KEEP(s) __asm__("" : "+r"(s))
+#else
+#define TL_WASM_KEEP(s) ((void)0)
+#endif
+
 typedef struct tl_f8 {
     v128_t lo, hi;
 } tl_f8;
@@ -44,7 +53,11 @@ static inline void tl_f8_storeu(float *p, tl_f8 a) {
     wasm_v128_store(p, a.lo);
     wasm_v128_store(p + 4, a.hi);
 }
-static inline tl_f8 tl_f8_set1(float s) { return tl_wasm_f8(wasm_f32x4_splat(s), wasm_f32x4_splat(s)); }
+static inline tl_f8 tl_f8_set1(float s) {
+    TL_WASM_KEEP(s);
+    v128_t r = wasm_f32x4_splat(s);
+    return tl_wasm_f8(r, r);
+}
 static inline tl_f8 tl_f8_zero(void) { return tl_f8_set1(0.0f); }
 static inline tl_f8 tl_f8_add(tl_f8 a, tl_f8 b) {
     return tl_wasm_f8(wasm_f32x4_add(a.lo, b.lo), wasm_f32x4_add(a.hi, b.hi));
@@ -108,6 +121,7 @@ static inline int tl_m8_any(tl_m8 a) { return wasm_v128_any_true(wasm_v128_or(a.
 static inline int tl_m8_all(tl_m8 a) { return wasm_i32x4_all_true(wasm_v128_and(a.lo, a.hi)) != 0; }
 static inline tl_m8 tl_m8_from_bits(unsigned bits) {
     const v128_t lo = wasm_i32x4_const(1, 2, 4, 8), hi = wasm_i32x4_const(16, 32, 64, 128);
+    TL_WASM_KEEP(bits);
     v128_t b = wasm_i32x4_splat((int32_t)(bits & 0xffu));
     return tl_wasm_m8(wasm_i32x4_eq(wasm_v128_and(b, lo), lo), wasm_i32x4_eq(wasm_v128_and(b, hi), hi));
 }
@@ -123,7 +137,11 @@ static inline void tl_i8_storeu(int32_t *p, tl_i8 a) {
     wasm_v128_store(p, a.lo);
     wasm_v128_store(p + 4, a.hi);
 }
-static inline tl_i8 tl_i8_set1(int32_t s) { return tl_wasm_i8(wasm_i32x4_splat(s), wasm_i32x4_splat(s)); }
+static inline tl_i8 tl_i8_set1(int32_t s) {
+    TL_WASM_KEEP(s);
+    v128_t r = wasm_i32x4_splat(s);
+    return tl_wasm_i8(r, r);
+}
 static inline tl_i8 tl_i8_add(tl_i8 a, tl_i8 b) {
     return tl_wasm_i8(wasm_i32x4_add(a.lo, b.lo), wasm_i32x4_add(a.hi, b.hi));
 }
