@@ -33,6 +33,7 @@ uint32_t tl_hull_checksum(const void *blob, uint32_t bytes) {
         uint32_t word;
         memcpy(&word, at + i, 4u);
         hash = (hash ^ word) * 16777619u;
+        hash ^= hash >> 15; /* brings high bits down, where the product does not */
     }
     return hash;
 }
@@ -109,6 +110,14 @@ void tl_hull_derive(const talus_hull *h, talus_hull *out) {
     }
     out->inner_radius = (float)tl_d_max(inner, 0.0);
     out->outer_radius = (float)tl_d_sqrt(outer);
+}
+
+int tl_hull_has_mass(const talus_hull *h) {
+    int finite = tl_is_finite(h->volume) && tl_is_finite(h->outer_radius);
+    for (int i = 0; i < 6; ++i) {
+        finite = finite && tl_is_finite(h->inertia[i]);
+    }
+    return finite && h->volume > 0.0f && h->inertia[0] > 0.0f && h->inertia[1] > 0.0f && h->inertia[2] > 0.0f;
 }
 
 size_t talus_hull_size(const talus_hull *hull) { return hull->bytes; }

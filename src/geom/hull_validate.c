@@ -198,11 +198,7 @@ talus_status talus_hull_validate(const void *blob, size_t bytes) {
     }
     talus_hull derived;
     tl_hull_derive(h, &derived);
-    if (memcmp(h, &derived, sizeof derived) != 0) {
-        return TALUS_BAD_BLOB;
-    }
-    if (!all_finite(&h->volume, 1u) || !all_finite(h->inertia, 6u) || !tl_is_finite(h->outer_radius) ||
-        !(h->volume > 0.0f && h->inertia[0] > 0.0f && h->inertia[1] > 0.0f && h->inertia[2] > 0.0f)) {
+    if (memcmp(h, &derived, sizeof derived) != 0 || !tl_hull_has_mass(h)) {
         return TALUS_BAD_BLOB;
     }
     talus_vec3 reach = tl_max3(tl_abs3(h->bounds.lower), tl_abs3(h->bounds.upper));

@@ -218,7 +218,7 @@ talus_status tl_qh_write(const tl_qh *q, void *out, size_t out_size, size_t *siz
     tl_hull_derive(h, &header);
     memcpy(out, &header, sizeof header);
     h->checksum = tl_hull_checksum(out, h->bytes);
-    if (!tl_is_finite(h->volume) || !(h->volume > 0.0f)) {
+    if (!tl_hull_has_mass(h)) {
         return TALUS_BAD_SHAPE;
     }
     talus_status status = talus_hull_validate(out, h->bytes);
