@@ -1,5 +1,6 @@
 /* The table of pairs: which algorithm answers which two types, and the mirror of those that know one order only. */
 #include "collide/general.h"
+#include "collide/polyhedra.h"
 
 #include <string.h>
 
@@ -34,6 +35,11 @@ void tl_collide(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a
     memset(out, 0, sizeof *out);
     if (is_far(b_in_a->position)) {
         collide_far(&ca, &cb, margin, out);
+        return;
+    }
+    int flat =
+        (ca.kind == TL_CORE_BOX || ca.kind == TL_CORE_HULL) && (cb.kind == TL_CORE_BOX || cb.kind == TL_CORE_HULL);
+    if (flat && tl_collide_polyhedra(&ca, &cb, margin, cache, out)) {
         return;
     }
     tl_collide_general(&ca, &cb, margin, cache, out);

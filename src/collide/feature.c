@@ -48,11 +48,6 @@ static void box_face_local(talus_vec3 half, int axis, int positive, tl_feature *
     }
 }
 
-void tl_feature_box_face(const tl_core *core, int axis, int positive, tl_feature *out) {
-    box_face_local(core->half, axis, positive, out);
-    place(core, out);
-}
-
 static void box_feature(const tl_core *core, talus_vec3 d, int strict, tl_feature *f) {
     talus_vec3 m = tl_abs3(d);
     int axis = m.x >= m.y ? (m.x >= m.z ? 0 : 2) : (m.y >= m.z ? 1 : 2);
@@ -104,8 +99,22 @@ static void hull_face_local(const talus_hull *hull, uint32_t face, tl_feature *f
     }
 }
 
-void tl_feature_hull_face(const tl_core *core, uint32_t face, tl_feature *out) {
-    hull_face_local(core->hull, face, out);
+void tl_feature_face(const tl_core *core, uint32_t face, tl_feature *out) {
+    if (core->kind == TL_CORE_BOX) {
+        box_face_local(core->half, (int)(face >> 1), (int)(face & 1u), out);
+    } else {
+        hull_face_local(core->hull, face, out);
+    }
+    place(core, out);
+}
+
+void tl_feature_edge(const tl_core *core, uint32_t from, uint32_t to, uint32_t edge, tl_feature *out) {
+    out->normal = tl_v(0.0f, 0.0f, 0.0f);
+    if (core->kind == TL_CORE_BOX) {
+        set_segment(out, tl_box_corner(core->half, from), tl_box_corner(core->half, to), from, to, box_edge(from, to));
+    } else {
+        set_segment(out, tl_hull_point(core->hull, from), tl_hull_point(core->hull, to), from, to, edge);
+    }
     place(core, out);
 }
 

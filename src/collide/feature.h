@@ -23,10 +23,9 @@ typedef struct tl_feature {
  * edge counts only near to square with n; else the face that is closest to square with it wherever there are faces. */
 void tl_feature_find(const tl_core *core, talus_vec3 n, int strict, tl_feature *out);
 
-/* Face `axis` (0..2) of a box, the positive one or the negative one. */
-void tl_feature_box_face(const tl_core *core, int axis, int positive, tl_feature *out);
-/* A face and an edge of a hull. */
-void tl_feature_hull_face(const tl_core *core, uint32_t face, tl_feature *out);
+/* A face of a box (2 axis + positive) or hull by its number; an edge of either between two corners. */
+void tl_feature_face(const tl_core *core, uint32_t face, tl_feature *out);
+void tl_feature_edge(const tl_core *core, uint32_t from, uint32_t to, uint32_t edge, tl_feature *out);
 
 /* A way to meet: a unit normal from A to B and the points of A and B that it was found with. */
 typedef struct tl_touch {
@@ -35,16 +34,17 @@ typedef struct tl_touch {
     talus_vec3 point_a, point_b;
 } tl_touch;
 
-/* The points at most `margin` apart where two features meet along the touch's normal; the touch's own points are among
- * them if no other is as near to within `tolerance` (m). */
+/* The points at most `margin` apart where two features meet along the touch's normal; there may be none. The touch's
+ * points are not read. */
 void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch *touch, float margin, float tolerance,
                        tl_manifold *out);
 
-/* Finds the features of both cores along the touch's normal and builds the manifold. */
-void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out);
+/* The least separation in a manifold that has points. */
+float tl_manifold_least(const tl_manifold *m);
 
-/* A manifold of one point. */
-void tl_manifold_single(const tl_touch *touch, uint32_t id, tl_manifold *out);
+/* Finds the features of both cores along the touch's normal and builds the manifold; the touch's own points are in it
+ * where no others are as near. */
+void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out);
 
 /* Numbers for points: of a vertex of B on A, of a vertex of A on B, of two edges, and of two points. */
 static inline uint32_t tl_point_id(uint32_t kind, uint32_t a, uint32_t b) {

@@ -7,8 +7,9 @@ static void snap(const tl_core *a, const tl_core *b, talus_vec3 n, tl_touch *tou
     uint32_t ia = 0, ib = 0;
     talus_vec3 pa, pb;
     float s = tl_core_separation(a, b, n, &ia, &ib, &pa, &pb) - (a->radius + b->radius);
-    float slack = 1e-5f * tl_min(a->size, b->size) + 2.5e-7f * tl_max(a->size, b->size);
-    if (s >= touch->separation - tl_abs(touch->separation) * 2e-3f - slack) {
+    float slack = 1e-5f * tl_min(a->size, b->size) + 5e-7f * tl_max(a->size, b->size);
+    slack += touch->separation > 0.0f ? 2e-3f * touch->separation : -5e-5f * touch->separation;
+    if (s >= touch->separation - slack) {
         touch->normal = n;
         touch->separation = s;
     }

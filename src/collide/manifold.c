@@ -9,7 +9,7 @@
 #define MAX_CLIP (2u * TL_FEATURE_POINTS)
 /* The side planes stand this far outside of the face, of the smaller feature's extent: faces that fit one another
  * exactly keep their corners while they jitter. */
-#define SIDE_SLACK 1e-3f
+#define SIDE_SLACK 5e-4f
 /* A point this much less deep must be that times further out to be kept instead. */
 #define GAP_WEIGHT 4.0f
 #define FROM_REFERENCE 0x8000u
@@ -171,6 +171,42 @@ static uint32_t clip_segment(const tl_feature *ref, const tl_feature *inc, int r
     return count;
 }
 
+/* A point over the reference. */
+static uint32_t clip_point(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
+                           float slack, candidate *out) {
+    talus_vec3 outward = ref_is_a ? n : tl_neg(n);
+    for (uint32_t i = 0; i < ref->count; ++i) {
+        talus_vec3 side;
+        float offset = side_plane(ref, i, outward, slack, &side);
+        if (tl_dot(side, inc->point[0]) + offset < 0.0f) {
+            return 0;
+        }
+    }
+    uint32_t count = 0;
+    measure(ref, ref_is_a, n, 1.0f / tl_dot(ref->normal, outward), margin, inc->point[0],
+            tl_point_id(ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A, inc->vertex[0], 0), out, &count);
+    return count;
+}
+
+/* Where two segments cross, seen along the normal. */
+static uint32_t cross_segments(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, candidate *out) {
+    talus_vec3 u = tl_sub(a->point[1], a->point[0]), w = tl_sub(b->point[1], b->point[0]);
+    talus_vec3 across = tl_cross(u, n), d = tl_sub(b->point[0], a->point[0]), other = tl_cross(w, n);
+    float uw = tl_dot(across, w), wu = tl_dot(other, u);
+    if (uw == 0.0f || wu == 0.0f) {
+        return 0;
+    }
+    float t = -tl_dot(across, d) / uw, s = tl_dot(other, d) / wu;
+    if (!(t >= -SIDE_SLACK && t <= 1.0f + SIDE_SLACK && s >= -SIDE_SLACK && s <= 1.0f + SIDE_SLACK)) {
+        return 0;
+    }
+    talus_vec3 p = tl_mad(a->point[0], tl_clamp(s, 0.0f, 1.0f), u), q = tl_mad(b->point[0], tl_clamp(t, 0.0f, 1.0f), w);
+    out->gap = tl_dot(n, tl_sub(q, p));
+    out->p = tl_scale(tl_add(p, q), 0.5f);
+    out->id = tl_point_id(TL_ID_EDGES, a->edge[0], b->edge[0]);
+    return out->gap <= margin;
+}
+
 /* Two segments that run alike, within 3 degrees, meet in the two ends of what they share. */
 static uint32_t meet_segments(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, candidate *out) {
     talus_vec3 u = tl_sub(a->point[1], a->point[0]), w = tl_sub(b->point[1], b->point[0]);
@@ -317,12 +353,28 @@ static uint32_t add_touch(const tl_touch *touch, uint32_t id, float tolerance, c
     return count;
 }
 
-void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch *touch, float margin, float tolerance,
-                       tl_manifold *out) {
-    candidate c[MAX_CLIP];
-    uint32_t count = 0;
-    talus_vec3 n = touch->normal;
+/* No point is nearer than the shapes are; beside the face, within the slack, it may have seemed so. */
+static void write(const candidate *c, uint32_t count, const tl_touch *touch, tl_manifold *out) {
+    out->normal = touch->normal;
+    out->count = count;
+    for (uint32_t i = 0; i < count; ++i) {
+        out->point[i].position = c[i].p;
+        out->point[i].separation = tl_max(c[i].gap, touch->separation);
+        uint32_t id = c[i].id;
+        for (uint32_t k = 0; k < i; ++k) {
+            if (out->point[k].id == id) {
+                id += 0x4001u;
+                k = UINT32_MAX;
+            }
+        }
+        out->point[i].id = id;
+    }
+}
+
+static uint32_t meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, float tolerance,
+                     candidate *c) {
     int a_face = a->count >= 3, b_face = b->count >= 3;
+    uint32_t count = 0;
     if (a_face && b_face) {
         a_face = tl_dot(a->normal, n) >= -tl_dot(b->normal, n) - 1e-3f;
         b_face = !a_face;
@@ -335,45 +387,41 @@ void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch 
             count = clip_polygon(ref, inc, a_face, n, margin, c);
         } else if (inc->count == 2) {
             count = clip_segment(ref, inc, a_face, n, margin, c);
+        } else {
+            count = clip_point(ref, inc, a_face, n, margin, tolerance, c);
         }
     } else if (a->count == 2 && b->count == 2) {
         count = meet_segments(a, b, n, margin, c);
+        count = count > 0 ? count : cross_segments(a, b, n, margin, c);
     }
-    if (count > TL_MANIFOLD_POINTS) {
-        count = reduce(c, count, n, tolerance);
+    return count > TL_MANIFOLD_POINTS ? reduce(c, count, n, tolerance) : count;
+}
+
+void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch *touch, float margin, float tolerance,
+                       tl_manifold *out) {
+    candidate c[MAX_CLIP];
+    write(c, meet(a, b, touch->normal, margin, tolerance, c), touch, out);
+}
+
+float tl_manifold_least(const tl_manifold *m) {
+    float least = m->point[0].separation;
+    for (uint32_t i = 1; i < m->count; ++i) {
+        least = tl_min(least, m->point[i].separation);
     }
-    count = add_touch(touch, touch_id(a, b), tolerance, c, count);
-    out->normal = n;
-    out->count = count;
-    for (uint32_t i = 0; i < count; ++i) {
-        out->point[i].position = c[i].p;
-        out->point[i].separation = c[i].gap;
-        uint32_t id = c[i].id;
-        for (uint32_t k = 0; k < i; ++k) {
-            if (out->point[k].id == id) {
-                id += 0x4001u;
-                k = UINT32_MAX;
-            }
-        }
-        out->point[i].id = id;
-    }
+    return least;
 }
 
 void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out) {
+    candidate c[MAX_CLIP];
     tl_feature fa, fb;
     talus_vec3 n = touch->normal, back = tl_neg(n);
+    float tolerance = tl_touch_tolerance(a, b);
     tl_feature_find(a, n, 1, &fa);
     tl_feature_find(b, back, fa.count < 3, &fb);
     if (fa.count < 3 && fb.count >= 3) {
         tl_feature_find(a, n, 0, &fa);
     }
-    tl_manifold_build(&fa, &fb, touch, margin, tl_touch_tolerance(a, b), out);
-}
-
-void tl_manifold_single(const tl_touch *touch, uint32_t id, tl_manifold *out) {
-    out->normal = touch->normal;
-    out->count = 1;
-    out->point[0].position = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
-    out->point[0].separation = touch->separation;
-    out->point[0].id = id;
+    uint32_t count = meet(&fa, &fb, n, margin, tolerance, c);
+    count = add_touch(touch, touch_id(&fa, &fb), tolerance, c, count);
+    write(c, count, touch, out);
 }

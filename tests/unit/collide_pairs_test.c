@@ -1,0 +1,160 @@
+/* Every type against every type at random poses: the separation is the greatest over all directions, the normal reaches
+ * it, the points lie on both shapes, and changing the roles changes nothing but the frame. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "collide_brute.h"
+
+static int failures;
+
+#define CHECK(cond, ...)                                                                                               \
+    do {                                                                                                               \
+        if (!(cond)) {                                                                                                 \
+            if (failures++ < 30) {                                                                                     \
+                printf("  failed %s: ", #cond);                                                                        \
+                printf(__VA_ARGS__);                                                                                   \
+                printf("\n");                                                                                          \
+            }                                                                                                          \
+        }                                                                                                              \
+    } while (0)
+
+static double least(const tl_manifold *m) {
+    double s = 1e300;
+    for (uint32_t i = 0; i < m->count; ++i) {
+        s = fmin(s, (double)m->point[i].separation);
+    }
+    return s;
+}
+
+static int is_flat(int kind) { return kind == BRUTE_BOX || kind == BRUTE_HULL; }
+
+static void check_manifold(const char *name, const tl_convex *a, const tl_convex *b, const talus_pose *pose,
+                           float margin, const tl_manifold *m, double expected, int exact) {
+    double size = fmin(d_size(a), d_size(b)), big = fmax(d_size(a), d_size(b));
+    double tolerance = exact ? 1e-4 * fabs(expected) + 1e-5 * size + 1e-6 * big : 2e-3 * fabs(expected) + 1e-4 * big;
+    if (expected > 0.0) {
+        tolerance = 0.02 * expected + 1e-5 * big;
+    }
+    if (m->count == 0) {
+        CHECK(expected > (double)margin - tolerance, "%s: no points but separation %g margin %g", name, expected,
+              (double)margin);
+        return;
+    }
+    double s = least(m);
+    d_pair p;
+    p.a = a;
+    p.b = b;
+    p.pose = d_pose_of(pose);
+    d3 n = d3_of(m->normal);
+    CHECK(fabs(d3_length(n) - 1.0) < 1e-5, "%s: normal of length %g", name, d3_length(n));
+    CHECK(fabs(s - expected) <= tolerance, "%s: separation %.9g expected %.9g count %u", name, s, expected, m->count);
+    double along = d_separation(&p, n);
+    CHECK(along >= expected - tolerance, "%s: normal separates by %.9g, expected %.9g", name, along, expected);
+    for (uint32_t i = 0; i < m->count; ++i) {
+        d3 mid = d3_of(m->point[i].position), half = d3_scale(n, 0.5 * (double)m->point[i].separation);
+        d3 on_a = d3_sub(mid, half), on_b = d_rotate_back(&p.pose, d3_sub(d3_add(mid, half), p.pose.t));
+        double slack = 4e-3 * fmin(size, big) + 1e-5 * big + 0.02 * fmax(expected, 0.0) + tolerance;
+        CHECK((double)m->point[i].separation <= (double)margin + 1e-6 * big, "%s: point beyond the margin", name);
+        CHECK(d_outside(a, on_a) < slack, "%s: point %u of %u off A by %g", name, i, m->count, d_outside(a, on_a));
+        CHECK(d_outside(b, on_b) < slack, "%s: point %u of %u off B by %g", name, i, m->count, d_outside(b, on_b));
+        for (uint32_t k = 0; k < i; ++k) {
+            CHECK(m->point[i].id != m->point[k].id, "%s: id %x twice", name, m->point[i].id);
+        }
+    }
+}
+
+static void one_pair(int ka, int kb, float low, float high, float margin, float spread) {
+    char name[96];
+    uint64_t state = brute_state;
+    tl_convex a = brute_shape(ka, low, high), b = brute_shape(kb, low, high);
+    talus_pose pose;
+    pose.rotation = brute_rotation();
+    if ((brute_u32() & 7u) == 0) {
+        pose.rotation = tl_quat_identity();
+    }
+    float reach = (float)(d_size(&a) + d_size(&b));
+    pose.position = tl_scale(brute_direction(), brute_range(0.0f, spread * reach));
+    snprintf(name, sizeof name, "%s-%s seed %llu", brute_kind_name[ka], brute_kind_name[kb], (unsigned long long)state);
+    d3 n;
+    double expected;
+    if (!d_exact_separation(&a, &b, &pose, &expected, &n)) {
+        expected = d_best_separation(&a, &b, &pose, &n);
+    }
+    tl_manifold m, w;
+    tl_pair_cache cache = {{0, 0, 0, 0}}, other = {{0, 0, 0, 0}};
+    int exact = is_flat(ka) && is_flat(kb);
+    tl_collide(&a, &b, &pose, margin, &cache, &m);
+    check_manifold(name, &a, &b, &pose, margin, &m, expected, exact);
+    tl_collide(&a, &b, &pose, margin, &cache, &w);
+    check_manifold("again", &a, &b, &pose, margin, &w, expected, exact);
+    for (int i = 0; i < 4; ++i) {
+        cache.word[i] = brute_u32();
+    }
+    cache.word[0] = (brute_u32() & 1u) ? cache.word[0] & 0xc000001fu : cache.word[0];
+    tl_collide(&a, &b, &pose, margin, &cache, &w);
+    check_manifold("any cache", &a, &b, &pose, margin, &w, expected, exact);
+    talus_pose identity = tl_pose_identity(), back = tl_pose_relative(&pose, &identity);
+    tl_collide(&b, &a, &back, margin, &other, &w);
+    check_manifold("swapped", &b, &a, &back, margin, &w, expected, exact);
+    talus_vec3 pa, pb;
+    float distance = tl_distance(&a, &b, &pose, &other, &pa, &pb);
+    double big = fmax(d_size(&a), d_size(&b));
+    CHECK(fabs((double)distance - fmax(expected, 0.0)) <= 1e-3 * fmax(expected, 0.0) + 1e-5 * big,
+          "%s: distance %.9g expected %.9g", name, (double)distance, expected);
+    CHECK(fabs((double)tl_length(tl_sub(pb, pa)) - (double)distance) < 1e-5 * big, "%s: points not the distance apart",
+          name);
+}
+
+static void all_pairs(float low, float high, float margin, float spread, int rounds) {
+    for (int ka = 0; ka < BRUTE_KINDS; ++ka) {
+        for (int kb = ka; kb < BRUTE_KINDS; ++kb) {
+            int before = failures;
+            for (int i = 0; i < rounds; ++i) {
+                one_pair(ka, kb, low, high, margin, spread);
+            }
+            if (failures != before) {
+                printf("%s-%s: %d failures\n", brute_kind_name[ka], brute_kind_name[kb], failures - before);
+            }
+        }
+    }
+}
+
+static int rounds(int usual) {
+    const char *text = getenv("TALUS_ROUNDS");
+    return text != NULL ? usual * atoi(text) : usual;
+}
+
+static void shapes_of_like_size(void **state) {
+    (void)state;
+    failures = 0;
+    all_pairs(0.3f, 1.0f, 0.05f, 1.0f, rounds(20));
+    assert_int_equal(failures, 0);
+}
+
+static void large_margin(void **state) {
+    (void)state;
+    failures = 0;
+    all_pairs(0.3f, 1.0f, 10.0f, 2.0f, rounds(20));
+    assert_int_equal(failures, 0);
+}
+
+static void unlike_sizes(void **state) {
+    (void)state;
+    failures = 0;
+    all_pairs(0.02f, 2.0f, 0.1f, 0.7f, rounds(20));
+    assert_int_equal(failures, 0);
+}
+
+int main(void) {
+    brute_seed("collide_pairs_test");
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shapes_of_like_size),
+        cmocka_unit_test(large_margin),
+        cmocka_unit_test(unlike_sizes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
