@@ -17,11 +17,11 @@ $(BUILD)/libtalus.a: $(OBJ)
 
 $(BUILD)/%_avx2.o: %_avx2.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -mavx2 -c $< -o $@
+	@echo "  CC $<"; $(CC) $(ALL_CFLAGS) -mavx2 -c $< -o $@
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -c $< -o $@
+	@echo "  CC $<"; $(CC) $(ALL_CFLAGS) -c $< -o $@
 
 clean:
 	rm -rf $(BUILD)

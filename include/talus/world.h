@@ -54,7 +54,6 @@ typedef struct talus_world_def {
     float sleep_speed;           /* m/s, slower bodies may fall asleep */
     float sleep_time;            /* s */
     uint8_t enable_sleep;
-    uint8_t enable_warm_start;
     talus_isa isa;
 } talus_world_def;
 

@@ -1,0 +1,156 @@
+#include "stage/broad/refit.h"
+
+#include "geom/mass.h"
+#include "stage/store/lists.h"
+
+/* m: what a fat box has beyond the shape's own on every side, and how many steps ahead it looks along the velocity. */
+#define FAT_MARGIN 0.05f
+#define FAT_SHARE 0.1f /* of the shape's reach, if that is less */
+#define FAT_STEPS 4.0f
+
+tl_convex tl_shape_convex(const tl_header *h, const void *geometry, uint32_t shape) {
+    tl_convex c = {tl_shape_geometry(h)[shape], NULL};
+    c.hull = tl_geometry_hull(&c.geometry, geometry);
+    return c;
+}
+
+static talus_pose world_pose(const tl_header *h, uint32_t shape) {
+    talus_pose body = tl_row_pose_of(&tl_body_pose(h)[tl_shapes(h)[shape].body]);
+    talus_pose place = tl_row_pose_of(&tl_shape_place(h)[shape]);
+    return tl_pose_mul(&body, &place);
+}
+
+talus_aabb tl_shape_box(const tl_header *h, const void *geometry, uint32_t shape) {
+    tl_convex convex = tl_shape_convex(h, geometry, shape);
+    talus_pose pose = world_pose(h, shape);
+    return tl_convex_aabb(&convex, &pose);
+}
+
+static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
+    const tl_shape_meta *meta = &tl_shapes(h)[shape];
+    if (tl_body_type(&tl_bodies(h)[meta->body]) == TALUS_STATIC) {
+        return *box;
+    }
+    float margin = tl_min(FAT_MARGIN, FAT_SHARE * tl_shape_place(h)[shape].f[7]) + h->settings.speculative_margin;
+    talus_vec3 m = tl_v(margin, margin, margin);
+    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[meta->body]), FAT_STEPS * dt), zero = tl_v(0.0f, 0.0f, 0.0f);
+    talus_aabb fat = {tl_add(tl_sub(box->lower, m), tl_min3(way, zero)), tl_add(tl_add(box->upper, m), tl_max3(way, zero))};
+    return fat;
+}
+
+static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
+    tl_shape_meta *meta = &tl_shapes(h)[shape];
+    int tree = tl_body_type(&tl_bodies(h)[meta->body]) == TALUS_STATIC ? TL_TREE_STILL : TL_TREE_MOVING;
+    if (meta->node != TL_NONE) {
+        tl_tree_remove(h, tree, meta->node);
+    }
+    talus_aabb fat = fattened(h, shape, box, dt);
+    meta->node = tl_tree_insert(h, tree, shape, &fat);
+    tl_row_set6(&tl_shape_fat(h)[shape], fat.lower, fat.upper);
+    h->counters.proxies_refit++;
+}
+
+/* Whether the shape at its pose, and on the way of the coming step, is still within its fat box. A ball around the shape is
+ * asked first, which needs no rotation. */
+static int is_within(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
+    const tl_row8 *fat = &tl_shape_fat(h)[shape];
+    talus_aabb outer = {tl_row_xyz(fat), tl_row_345(fat)};
+    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[tl_shapes(h)[shape].body]), dt), zero = tl_v(0.0f, 0.0f, 0.0f);
+    float m = h->settings.speculative_margin;
+    talus_vec3 margin = tl_v(m, m, m);
+    talus_aabb swept = {tl_add(tl_sub(box->lower, margin), tl_min3(way, zero)),
+                        tl_add(tl_add(box->upper, margin), tl_max3(way, zero))};
+    return tl_aabb_contains(&outer, &swept);
+}
+
+void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
+    h->counters.proxies_refit = 0;
+    for (uint32_t k = 0; k < h->moved_shapes; k++) {
+        uint32_t shape = tl_moved_shape(h)[k];
+        talus_aabb box = tl_shape_box(h, geometry, shape);
+        enter(h, shape, &box, dt);
+    }
+    for (uint32_t k = 0; k < h->awake_bodies; k++) {
+        uint32_t body = tl_awake_body(h)[k];
+        for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
+            if (tl_shapes(h)[s].flags & TL_SHAPE_MOVED) {
+                continue;
+            }
+            talus_aabb box = tl_shape_box(h, geometry, s);
+            if (!is_within(h, s, &box, dt)) {
+                enter(h, s, &box, dt);
+                tl_shape_mark_moved(h, s);
+            }
+        }
+    }
+}
+
+/* Whether a joint that forbids it ties two bodies together. */
+static int joined(const tl_header *h, uint32_t a, uint32_t b) {
+    const tl_joint_record *joints = tl_joints(h);
+    for (uint32_t l = tl_bodies(h)[a].first_joint; l != TL_NONE; l = joints[l >> 1].next[l & 1u]) {
+        const tl_joint_record *j = &joints[l >> 1];
+        if (!(j->flags & TL_JOINT_COLLIDE) && (j->body_a == b || j->body_b == b)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static int may_collide(const tl_header *h, uint32_t a, uint32_t b) {
+    const tl_shape_meta *ma = &tl_shapes(h)[a], *mb = &tl_shapes(h)[b];
+    if (ma->body == mb->body || (ma->flags & mb->flags & TL_SHAPE_SENSOR)) {
+        return 0;
+    }
+    int dynamic = tl_body_is_dynamic(h, ma->body) || tl_body_is_dynamic(h, mb->body);
+    if (!dynamic && !((ma->flags | mb->flags) & TL_SHAPE_SENSOR)) {
+        return 0;
+    }
+    if (ma->group != 0 && ma->group == mb->group) {
+        if (ma->group < 0) {
+            return 0;
+        }
+    } else if (!(tl_shape_mask(h)[a] & tl_shape_category(h)[b]) || !(tl_shape_mask(h)[b] & tl_shape_category(h)[a])) {
+        return 0;
+    }
+    /* The ground ties many joints: ask the body that has fewer. */
+    return ma->body == 0 ? !joined(h, mb->body, ma->body) : !joined(h, ma->body, mb->body);
+}
+
+static void pair(tl_header *h, uint32_t s, uint32_t t) {
+    uint32_t a = s < t ? s : t, b = s < t ? t : s;
+    if (!may_collide(h, a, b) || tl_pair_find(h, a, b) != TL_NONE) {
+        return;
+    }
+    if (tl_contact_make(h, a, b) == TL_NONE) {
+        h->counters.contacts.dropped++;
+    } else {
+        h->counters.pairs_made++;
+    }
+}
+
+void tl_stage_pairs(tl_header *h) {
+    h->counters.pairs_made = 0;
+    h->counters.contacts.dropped = 0;
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < h->moved_shapes; k++) {
+        uint32_t shape = tl_moved_shape(h)[k];
+        const tl_row8 *fat = &tl_shape_fat(h)[shape];
+        talus_aabb box = {tl_row_xyz(fat), tl_row_345(fat)};
+        int still = tl_body_type(&tl_bodies(h)[tl_shapes(h)[shape].body]) == TALUS_STATIC;
+        uint32_t before = h->counters.contacts.dropped;
+        tl_tree_walk walk;
+        for (int tree = 0; tree < (still ? 1 : 2); tree++) {
+            tl_tree_begin(&walk, h, tree, &box);
+            for (uint32_t other = tl_tree_next(&walk, h); other != TL_NONE; other = tl_tree_next(&walk, h)) {
+                pair(h, shape, other);
+            }
+        }
+        if (h->counters.contacts.dropped != before) { /* asks again in the next step, when there may be room */
+            tl_moved_shape(h)[kept++] = shape;
+        } else {
+            tl_shapes(h)[shape].flags &= ~(uint32_t)TL_SHAPE_MOVED;
+        }
+    }
+    h->moved_shapes = kept;
+}

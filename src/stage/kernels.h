@@ -1,0 +1,47 @@
+/* The laned kernels of the stages and the choice among instruction sets. Every kernel works on a range [first, last) and
+ * gives the same bits however the range is cut. */
+#ifndef TL_KERNELS_H
+#define TL_KERNELS_H
+
+#include "stage/store/store.h"
+
+/* What the stages of one step share. Holds pointers and so lives on the stack only. */
+typedef struct tl_step {
+    tl_header *h;
+    const void *geometry;
+    float dt, sub;     /* s: of the step, of a sub-step */
+    float inverse_sub; /* 1/s */
+    float warm_scale;  /* this sub-step over the one that the stored impulses come from */
+    float bias_rate, mass_scale, impulse_scale; /* of soft contacts */
+    float joint_rate;  /* 1/s: the share of a joint's error taken back in a sub-step, over the sub-step */
+    uint32_t rows;     /* body rows in use, the still one included, rounded up to eight */
+    int any_locks;
+} tl_step;
+
+typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);
+
+typedef struct tl_kernels {
+    tl_kernel velocity, position;                    /* ranges of eight body rows */
+    tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, bounce_contacts, store_contacts; /* groups */
+    tl_kernel prepare_joints, warm_joints, solve_joints, relax_joints, store_joints; /* joint groups */
+} tl_kernels;
+
+extern const tl_kernels tl_kernels_scalar;
+#if defined(__SSE2__)
+extern const tl_kernels tl_kernels_sse2;
+#endif
+#if defined(__x86_64__)
+extern const tl_kernels tl_kernels_avx2;
+#endif
+#if defined(__aarch64__)
+extern const tl_kernels tl_kernels_neon;
+#endif
+#if defined(__wasm_simd128__)
+extern const tl_kernels tl_kernels_wasm;
+#endif
+
+talus_isa tl_best_isa(void);
+/* The kernels of an instruction set that is available. */
+const tl_kernels *tl_kernels_of(talus_isa isa);
+
+#endif

@@ -1,0 +1,126 @@
+/* Body rows: what the solver reads and writes of the awake bodies, one 32-byte row a column each. Row 0 stands for all that
+ * does not move. */
+#include <string.h>
+
+#include "base/eigen.h"
+#include "stage/stages.h"
+
+static void rest_row(tl_header *h, uint32_t row) {
+    memset(&tl_row_velocity(h)[row], 0, sizeof(tl_row8));
+    memset(&tl_row_before(h)[row], 0, sizeof(tl_row8));
+    memset(&tl_row_moved(h)[row], 0, sizeof(tl_row8));
+    memset(&tl_row_pose(h)[row], 0, sizeof(tl_row8));
+    memset(&tl_row_frame(h)[row], 0, sizeof(tl_row8));
+    memset(&tl_row_force(h)[row], 0, sizeof(tl_row8));
+    tl_row_pose(h)[row].f[6] = 1.0f;
+    tl_row_frame(h)[row].f[3] = 1.0f;
+}
+
+/* K of a body that may not turn about some world axes: the inertia's block of the free axes, inverted, in principal axes.
+ * The block is padded with a moment so large that its inverse is nothing. */
+static void locked_frame(const tl_header *h, uint32_t body, uint32_t locks, talus_quat *frame, talus_vec3 *s) {
+    const float *own = tl_body_inertias(h)[body].s;
+    talus_mat3 axes = tl_mat3_from_quat(tl_row_quat(&tl_body_pose(h)[body]));
+    float moment[3], most = 0.0f;
+    for (int k = 0; k < 3; k++) {
+        moment[k] = own[k] > 0.0f ? 1.0f / (own[k] * own[k]) : 0.0f;
+        most = tl_max(most, moment[k]);
+    }
+    talus_mat3 scaled = {tl_scale(axes.x, moment[0]), tl_scale(axes.y, moment[1]), tl_scale(axes.z, moment[2])};
+    talus_mat3 back = tl_mat3_transpose(&axes), world = tl_mat3_mat(&scaled, &back);
+    float m[3][3] = {{world.x.x, world.y.x, world.z.x}, {world.x.y, world.y.y, world.z.y}, {world.x.z, world.y.z, world.z.z}};
+    for (int k = 0; k < 3; k++) {
+        if (locks & (uint32_t)TALUS_LOCK_ANGULAR_X << k) {
+            for (int j = 0; j < 3; j++) {
+                m[k][j] = m[j][k] = 0.0f;
+            }
+        }
+    }
+    talus_mat3 block = {{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
+    float values[3];
+    tl_principal_axes(&block, frame, values);
+    s->x = values[0] > 1e-6f * most ? 1.0f / sqrtf(values[0]) : 0.0f;
+    s->y = values[1] > 1e-6f * most ? 1.0f / sqrtf(values[1]) : 0.0f;
+    s->z = values[2] > 1e-6f * most ? 1.0f / sqrtf(values[2]) : 0.0f;
+}
+
+/* u with w = R (s u); zero where s is. */
+static talus_vec3 whiten(talus_quat frame, talus_vec3 s, talus_vec3 w) {
+    talus_vec3 own = tl_rotate_back(frame, w);
+    return tl_v(s.x > 0.0f ? own.x / s.x : 0.0f, s.y > 0.0f ? own.y / s.y : 0.0f, s.z > 0.0f ? own.z / s.z : 0.0f);
+}
+
+static void fill_row(tl_step *step, uint32_t body, uint32_t row) {
+    tl_header *h = step->h;
+    const tl_body_inertia *in = &tl_body_inertias(h)[body];
+    uint32_t flags = tl_bodies(h)[body].flags, locks = flags >> TL_BODY_LOCKS;
+    const tl_row8 *pose = &tl_body_pose(h)[body], *v = &tl_body_velocity(h)[body];
+    int dynamic = (flags & TL_BODY_TYPE) == TALUS_DYNAMIC, turns = dynamic;
+    talus_quat frame = tl_row_quat(pose);
+    talus_vec3 s = tl_v(in->s[0], in->s[1], in->s[2]), w = tl_row_345(v), linear = tl_row_xyz(v);
+    float gyro = flags & TL_BODY_GYRO ? 1.0f : 0.0f;
+    if (dynamic && locks & 56u) {
+        locked_frame(h, body, locks, &frame, &s);
+        gyro = 0.0f;
+    }
+    if (!dynamic || (s.x == 0.0f && s.y == 0.0f && s.z == 0.0f && !(locks & 56u))) {
+        turns = 0; /* keeps the spin it has, which u then is */
+        frame = tl_quat_identity();
+        s = tl_v(1.0f, 1.0f, 1.0f);
+        gyro = 0.0f;
+    }
+    tl_row8 *rv = &tl_row_velocity(h)[row], *rf = &tl_row_frame(h)[row], *ra = &tl_row_force(h)[row];
+    tl_row_pose(h)[row] = *pose;
+    tl_row_set6(rv, linear, whiten(frame, s, w));
+    rv->f[6] = dynamic ? in->inverse_mass : 0.0f;
+    rv->f[7] = turns ? 1.0f : 0.0f;
+    if ((locks & 7u) == 7u) {
+        rv->f[6] = 0.0f;
+    }
+    tl_row_before(h)[row] = *rv;
+    memset(&tl_row_moved(h)[row], 0, sizeof(tl_row8));
+    tl_row_moved(h)[row].f[6] = dynamic ? (float)locks : 0.0f;
+    rf->f[0] = frame.x, rf->f[1] = frame.y, rf->f[2] = frame.z, rf->f[3] = frame.w;
+    rf->f[4] = s.x, rf->f[5] = s.y, rf->f[6] = s.z, rf->f[7] = gyro;
+    talus_vec3 a = tl_v(0.0f, 0.0f, 0.0f), turn = a;
+    if (dynamic && in->inverse_mass > 0.0f) {
+        a = tl_scale(h->settings.gravity, in->gravity_scale);
+    }
+    if (dynamic && flags & TL_BODY_FORCE) {
+        const tl_row8 *f = &tl_body_force(h)[body];
+        a = tl_mad(a, in->inverse_mass, tl_row_xyz(f));
+        if (turns) {
+            turn = tl_mul(s, tl_rotate_back(frame, tl_row_345(f)));
+        }
+    }
+    tl_row_set6(ra, a, turn);
+    ra->f[6] = dynamic ? 1.0f / (1.0f + step->sub * in->linear_damping) : 1.0f;
+    ra->f[7] = dynamic ? 1.0f / (1.0f + step->sub * in->angular_damping) : 1.0f;
+    step->any_locks |= dynamic && locks != 0;
+}
+
+void tl_stage_body_rows(tl_step *step) {
+    tl_header *h = step->h;
+    step->any_locks = 0;
+    rest_row(h, 0);
+    for (uint32_t k = 0; k < h->awake_bodies; k++) {
+        fill_row(step, tl_awake_body(h)[k], k + 1u);
+    }
+    uint32_t used = h->awake_bodies + 1u;
+    step->rows = (used + TL_LANES - 1u) / TL_LANES * TL_LANES;
+    for (uint32_t row = used; row < step->rows; row++) {
+        rest_row(h, row);
+    }
+}
+
+void tl_stage_locks(tl_step *step) {
+    tl_header *h = step->h;
+    for (uint32_t row = 1; row <= h->awake_bodies; row++) {
+        uint32_t locks = (uint32_t)tl_row_moved(h)[row].f[6];
+        for (uint32_t k = 0; k < 3u; k++) {
+            if (locks & (uint32_t)TALUS_LOCK_LINEAR_X << k) {
+                tl_row_velocity(h)[row].f[k] = tl_row_before(h)[row].f[k] = 0.0f;
+            }
+        }
+    }
+}

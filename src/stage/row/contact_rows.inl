@@ -1,0 +1,216 @@
+/* Contact rows: eight manifolds at a time become Jacobians and effective masses, from the bodies' poses when the step
+ * begins; and the impulses go back to the manifolds when it ends.
+ *
+ * Friction acts at the manifold's centre, as a vector in the tangent plane and a torque about the normal: three rows a
+ * manifold instead of two a point. */
+
+/* Weight of a point that is far apart, against one that touches, in the manifold's centre. */
+#define FAR_WEIGHT 1e-3f
+
+typedef struct contact_bodies {
+    v8 xa, xb;   /* centres of mass */
+    q8 qa, qb;   /* principal axes */
+    k8 ka, kb;
+    v8 va, ua, vb, ub;
+    tl_f8 ma, mb; /* inverse masses */
+    tl_f8 ta, tb; /* 1 if impulses turn it */
+} contact_bodies;
+
+static inline void load_contact_bodies(const tl_step *step, const tl_contact_group *g, contact_bodies *c) {
+    tl_f8 r[8];
+    const float *poses = tl_row_pose(step->h)->f, *frames = tl_row_frame(step->h)->f;
+    const float *velocities = tl_row_velocity(step->h)->f;
+    tl_f8_load_rows(poses, g->a, r);
+    c->xa = v8_of(r[0], r[1], r[2]), c->qa = q8_of(r[3], r[4], r[5], r[6]);
+    tl_f8_load_rows(poses, g->b, r);
+    c->xb = v8_of(r[0], r[1], r[2]), c->qb = q8_of(r[3], r[4], r[5], r[6]);
+    tl_f8_load_rows(frames, g->a, r);
+    c->ka = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
+    tl_f8_load_rows(frames, g->b, r);
+    c->kb = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
+    tl_f8_load_rows(velocities, g->a, r);
+    c->va = v8_of(r[0], r[1], r[2]), c->ua = v8_of(r[3], r[4], r[5]), c->ma = r[6], c->ta = r[7];
+    tl_f8_load_rows(velocities, g->b, r);
+    c->vb = v8_of(r[0], r[1], r[2]), c->ub = v8_of(r[3], r[4], r[5]), c->mb = r[6], c->tb = r[7];
+}
+
+/* 1 / k where k > 0, else 0. */
+static inline tl_f8 inverse_or_zero(tl_f8 k) {
+    tl_m8 ok = tl_f8_gt(k, tl_f8_zero());
+    return tl_f8_and_mask(ok, tl_f8_div(tl_f8_set1(1.0f), tl_f8_select(ok, k, tl_f8_set1(1.0f))));
+}
+
+/* j_a . j_a + j_b . j_b, of each body that impulses turn. */
+static inline tl_f8 angular_mass(const contact_bodies *c, v8 ja, v8 jb) {
+    return tl_f8_add(tl_f8_mul(c->ta, v8_dot(ja, ja)), tl_f8_mul(c->tb, v8_dot(jb, jb)));
+}
+
+/* A unit vector across n. */
+static inline v8 tangent_of(v8 n) {
+    tl_m8 flat = tl_f8_lt(tl_f8_abs(n.x), tl_f8_set1(0.57735f));
+    tl_f8 zero = tl_f8_zero();
+    v8 t = v8_select(flat, v8_of(zero, n.z, tl_f8_neg(n.y)), v8_of(n.y, tl_f8_neg(n.x), zero));
+    tl_f8 l = tl_f8_sqrt(v8_dot(t, t));
+    return v8_scale(t, inverse_or_zero(l));
+}
+
+/* The points' rows, and the weighted centre of the manifold on both bodies. */
+static void prepare_points(const tl_step *step, tl_contact_group *g, const contact_bodies *c, v8 n, v8 *center_a,
+                           v8 *center_b, tl_f8 *lever) {
+    const float *records = tl_points(step->h)->p[0].a;
+    const tl_contact_meta *metas = tl_contacts(step->h);
+    float count[TL_LANES];
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        count[k] = k < g->lanes ? (float)metas[g->contact[k]].count : 0.0f;
+    }
+    tl_f8 counts = tl_f8_loadu(count), zero = tl_f8_zero(), one = tl_f8_set1(1.0f), sum = zero, ways = zero;
+    tl_f8 fade = tl_f8_set1(1.0f / tl_max(step->h->settings.speculative_margin, 1e-6f));
+    v8 sum_a = v8_zero(), sum_b = v8_zero(), arms[4];
+    tl_f8 weights[4];
+    for (uint32_t p = 0; p < g->points; p++) {
+        tl_contact_lane_point *out = &g->point[p];
+        tl_f8 r[8];
+        tl_f8_load_rows_stride(records + 8u * p, 32u, g->contact, r);
+        tl_m8 used = tl_f8_gt(counts, tl_f8_set1((float)p));
+        v8 ra = q8_rotate(c->qa, v8_of(r[0], r[1], r[2])), rb = q8_rotate(c->qb, v8_of(r[3], r[4], r[5]));
+        tl_f8 gap = v8_dot(n, v8_sub(v8_add(v8_sub(c->xb, c->xa), rb), ra));
+        v8 ja = k8_mul(&c->ka, v8_cross(ra, n)), jb = k8_mul(&c->kb, v8_cross(rb, n));
+        tl_f8 mass = inverse_or_zero(tl_f8_add(tl_f8_add(c->ma, c->mb), angular_mass(c, ja, jb)));
+        v8_store(out->ja[0], ja);
+        v8_store(out->jb[0], jb);
+        tl_f8_store(out->gap, gap);
+        tl_f8_store(out->mass, tl_f8_and_mask(used, mass));
+        tl_f8_store(out->impulse, tl_f8_and_mask(used, tl_f8_mul(r[6], tl_f8_set1(step->warm_scale))));
+        tl_f8_store(out->peak, zero);
+        tl_f8 speed = tl_f8_add(v8_dot(n, v8_sub(c->vb, c->va)), tl_f8_sub(v8_dot(jb, c->ub), v8_dot(ja, c->ua)));
+        tl_f8_store(out->approach, tl_f8_and_mask(used, speed));
+        tl_f8 near = tl_f8_max(tl_f8_sub(one, tl_f8_mul(tl_f8_max(gap, zero), fade)), tl_f8_set1(FAR_WEIGHT));
+        weights[p] = tl_f8_and_mask(used, near);
+        arms[p] = ra;
+        sum = tl_f8_add(sum, weights[p]);
+        sum_a = v8_mad(sum_a, weights[p], ra);
+        sum_b = v8_mad(sum_b, weights[p], rb);
+    }
+    tl_f8 scale = inverse_or_zero(sum);
+    *center_a = v8_scale(sum_a, scale);
+    *center_b = v8_scale(sum_b, scale);
+    for (uint32_t p = 0; p < g->points; p++) {
+        v8 d = v8_sub(arms[p], *center_a);
+        ways = tl_f8_mad(ways, weights[p], tl_f8_sqrt(v8_dot(d, d)));
+    }
+    *lever = tl_f8_mul(ways, scale);
+}
+
+/* From the speed of approach when the step began to the one at which the surfaces meet, gaining or losing what gravity does
+ * over the gap: v^2 = v0^2 + 2 a s. */
+static void prepare_bounce(const tl_step *step, tl_contact_group *g, v8 n) {
+    tl_f8 r[8], zero = tl_f8_zero();
+    const float *forces = tl_row_force(step->h)->f;
+    tl_f8_load_rows(forces, g->a, r);
+    v8 a = v8_of(r[0], r[1], r[2]);
+    tl_f8_load_rows(forces, g->b, r);
+    tl_f8 closing = v8_dot(n, v8_sub(a, v8_of(r[0], r[1], r[2])));
+    for (uint32_t p = 0; p < g->points; p++) {
+        tl_f8 speed = tl_f8_load(g->point[p].approach), gap = tl_f8_max(tl_f8_load(g->point[p].gap), zero);
+        tl_f8 square = tl_f8_mad(tl_f8_mul(speed, speed), tl_f8_mul(tl_f8_set1(2.0f), closing), gap);
+        tl_f8 meet = tl_f8_sqrt(tl_f8_max(square, zero));
+        tl_f8_store(g->point[p].approach, tl_f8_and_mask(tl_f8_lt(speed, zero), meet));
+    }
+}
+
+static void prepare_friction(const tl_step *step, tl_contact_group *g, const contact_bodies *c, v8 n, v8 ra, v8 rb) {
+    tl_f8 r[8], warm = tl_f8_set1(step->warm_scale), mass = tl_f8_add(c->ma, c->mb);
+    v8 t1 = tangent_of(n), t2 = v8_cross(n, t1);
+    v8 ja1 = k8_mul(&c->ka, v8_cross(ra, t1)), jb1 = k8_mul(&c->kb, v8_cross(rb, t1));
+    v8 ja2 = k8_mul(&c->ka, v8_cross(ra, t2)), jb2 = k8_mul(&c->kb, v8_cross(rb, t2));
+    v8 jan = k8_mul(&c->ka, n), jbn = k8_mul(&c->kb, n);
+    tl_f8 k11 = tl_f8_add(mass, angular_mass(c, ja1, jb1)), k22 = tl_f8_add(mass, angular_mass(c, ja2, jb2));
+    tl_f8 k12 = tl_f8_add(tl_f8_mul(c->ta, v8_dot(ja1, ja2)), tl_f8_mul(c->tb, v8_dot(jb1, jb2)));
+    tl_f8 d = inverse_or_zero(tl_f8_sub(tl_f8_mul(k11, k22), tl_f8_mul(k12, k12)));
+    v8_store(g->tangent[0], t1);
+    v8_store(g->ja1[0], ja1);
+    v8_store(g->jb1[0], jb1);
+    v8_store(g->ja2[0], ja2);
+    v8_store(g->jb2[0], jb2);
+    v8_store(g->jan[0], jan);
+    v8_store(g->jbn[0], jbn);
+    tl_f8_store(g->k11, tl_f8_mul(k22, d));
+    tl_f8_store(g->k22, tl_f8_mul(k11, d));
+    tl_f8_store(g->k12, tl_f8_neg(tl_f8_mul(k12, d)));
+    tl_f8_store(g->twist_mass, inverse_or_zero(angular_mass(c, jan, jbn)));
+    tl_f8_load_rows(tl_heads(step->h)->normal, g->contact, r);
+    v8 impulse = v8_scale(v8_of(r[3], r[4], r[5]), warm);
+    tl_f8_store(g->tangent_impulse[0], v8_dot(impulse, t1));
+    tl_f8_store(g->tangent_impulse[1], v8_dot(impulse, t2));
+    tl_f8_store(g->twist_impulse, tl_f8_mul(r[6], warm));
+    tl_f8_store(g->rolling_impulse[0], tl_f8_zero());
+    tl_f8_store(g->rolling_impulse[1], tl_f8_zero());
+    if (g->rolls) {
+        v8 ka1 = k8_mul(&c->ka, t1), kb1 = k8_mul(&c->kb, t1), ka2 = k8_mul(&c->ka, t2), kb2 = k8_mul(&c->kb, t2);
+        tl_f8 k1 = angular_mass(c, ka1, kb1), k2 = angular_mass(c, ka2, kb2);
+        tl_f8_store(g->roll_mass, inverse_or_zero(tl_f8_max(k1, k2)));
+    }
+}
+
+static void prepare_materials(const tl_step *step, tl_contact_group *g) {
+    const tl_contact_material *materials = tl_contact_materials(step->h);
+    const tl_contact_meta *metas = tl_contacts(step->h);
+    uint32_t bounces = 0, rolls = 0;
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        const tl_contact_material *m = &materials[g->contact[k]];
+        g->static_friction[k] = m->static_friction;
+        g->dynamic_friction[k] = m->dynamic_friction;
+        g->restitution[k] = m->restitution;
+        g->rolling[k] = m->rolling;
+        if (k < g->lanes) {
+            bounces |= m->restitution > 0.0f || (metas[g->contact[k]].flags & TL_CONTACT_EVENTS);
+            rolls |= m->rolling > 0.0f;
+        }
+    }
+    g->bounces = bounces;
+    g->rolls = rolls;
+}
+
+static void prepare_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_contact_group *g = &tl_group_pool(step->h)[i];
+        contact_bodies c;
+        tl_f8 r[8];
+        load_contact_bodies(step, g, &c);
+        prepare_materials(step, g);
+        tl_f8_load_rows(tl_heads(step->h)->normal, g->contact, r);
+        v8 n = q8_rotate(c.qa, v8_of(r[0], r[1], r[2])), ra, rb;
+        v8_store(g->normal[0], n);
+        tl_f8 lever;
+        prepare_points(step, g, &c, n, &ra, &rb, &lever);
+        tl_f8_store(g->lever, lever);
+        prepare_friction(step, g, &c, n, ra, rb);
+        if (g->bounces) {
+            prepare_bounce(step, g, n);
+        }
+    }
+}
+
+static void store_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    tl_contact_head *heads = tl_heads(step->h);
+    tl_contact_points *points = tl_points(step->h);
+    for (uint32_t i = first; i < last; i++) {
+        const tl_contact_group *g = &tl_group_pool(step->h)[i];
+        v8 n = v8_load(g->normal[0]), t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
+        v8 f = v8_mad(v8_scale(t1, tl_f8_load(g->tangent_impulse[0])), tl_f8_load(g->tangent_impulse[1]), t2);
+        float friction[3][TL_LANES];
+        tl_f8_storeu(friction[0], f.x);
+        tl_f8_storeu(friction[1], f.y);
+        tl_f8_storeu(friction[2], f.z);
+        for (uint32_t k = 0; k < g->lanes; k++) {
+            uint32_t c = g->contact[k];
+            heads[c].friction[0] = friction[0][k];
+            heads[c].friction[1] = friction[1][k];
+            heads[c].friction[2] = friction[2][k];
+            heads[c].twist = g->twist_impulse[k];
+            for (uint32_t p = 0; p < g->points; p++) {
+                points[c].p[p].impulse = g->point[p].impulse[k];
+            }
+        }
+    }
+}

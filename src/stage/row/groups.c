@@ -1,0 +1,225 @@
+/* Groups: constraints that may be solved side by side, eight at a time. Within a colour no two share a moving body, so the
+ * lanes of a group write to different rows. What found no colour is packed as it comes, as long as nothing is shared. */
+#include <string.h>
+
+#include "stage/stages.h"
+
+/* Order: by colour, and within it by how many points there are, so that groups are of a kind. */
+#define KEYS ((TL_COLORS + 1u) * 4u)
+
+static uint32_t contact_key(const tl_contact_meta *m) { return m->color * 4u + (4u - m->count); }
+
+/* Sorts the touching contacts by key into contact_order; counting sort. Returns their number. */
+static uint32_t order_contacts(tl_header *h) {
+    uint32_t start[KEYS + 1u], total = 0;
+    const tl_contact_meta *metas = tl_contacts(h);
+    const uint32_t *awake = tl_awake_contact(h);
+    memset(start, 0, sizeof start);
+    for (uint32_t k = 0; k < h->awake_contacts; k++) {
+        const tl_contact_meta *m = &metas[awake[k]];
+        if (m->flags & TL_CONTACT_COLORED) {
+            start[contact_key(m)]++;
+            h->counters.contact_points += m->count;
+        }
+    }
+    for (uint32_t i = 0; i < KEYS; i++) {
+        uint32_t n = start[i];
+        start[i] = total;
+        total += n;
+    }
+    uint32_t *order = tl_contact_order(h);
+    for (uint32_t k = 0; k < h->awake_contacts; k++) {
+        const tl_contact_meta *m = &metas[awake[k]];
+        if (m->flags & TL_CONTACT_COLORED) {
+            order[start[contact_key(m)]++] = awake[k];
+        }
+    }
+    return total;
+}
+
+/* Whether a row of a moving body is in the group already. */
+static int holds_row(const uint32_t *a, const uint32_t *b, uint32_t lanes, uint32_t row) {
+    for (uint32_t k = 0; k < lanes; k++) {
+        if (a[k] == row || b[k] == row) {
+            return row != 0;
+        }
+    }
+    return 0;
+}
+
+static tl_contact_group *open_group(tl_header *h) {
+    if (h->groups >= h->capacity[TL_COUNT_GROUP]) {
+        return NULL;
+    }
+    tl_contact_group *g = &tl_group_pool(h)[h->groups++];
+    memset(g->a, 0, sizeof g->a);
+    memset(g->b, 0, sizeof g->b);
+    memset(g->contact, 0, sizeof g->contact);
+    g->lanes = g->points = 0;
+    return g;
+}
+
+void tl_stage_contact_groups(tl_step *step) {
+    tl_header *h = step->h;
+    const tl_contact_meta *metas = tl_contacts(h);
+    const uint32_t *rows = tl_body_row(h);
+    tl_row8 *moves = tl_row_moved(h);
+    uint32_t count = order_contacts(h), color = TL_NONE, colors = 0, dropped = 0;
+    tl_contact_group *g = NULL;
+    h->groups = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t c = tl_contact_order(h)[k];
+        const tl_contact_meta *m = &metas[c];
+        uint32_t a = rows[m->body_a], b = rows[m->body_b];
+        int shared = g && m->color == TL_COLORS && (holds_row(g->a, g->b, g->lanes, a) || holds_row(g->a, g->b, g->lanes, b));
+        colors += m->color != color;
+        if (!g || m->color != color || g->lanes == TL_LANES || shared) {
+            g = open_group(h);
+            color = m->color;
+        }
+        if (!g) {
+            dropped++;
+            continue;
+        }
+        g->a[g->lanes] = a;
+        g->b[g->lanes] = b;
+        g->contact[g->lanes++] = c;
+        g->points = m->count > g->points ? m->count : g->points;
+        moves[a].f[7] = moves[b].f[7] = 1.0f;
+    }
+    h->counters.contacts_touching = count;
+    h->counters.colors = colors;
+    h->counters.lane_groups = h->groups;
+    h->counters.lanes_used = count - dropped;
+    h->counters.rows.used = h->groups;
+    h->counters.rows.high_water = h->groups > h->counters.rows.high_water ? h->groups : h->counters.rows.high_water;
+    h->counters.rows.capacity = h->capacity[TL_COUNT_GROUP];
+    h->counters.rows.dropped = dropped;
+}
+
+/* --- joints ----------------------------------------------------------------------------------- */
+
+static int same_kind(const tl_joint_record *a, const tl_joint_record *b) {
+    return a->rows == b->rows && a->fixed == b->fixed && a->free_axis == b->free_axis &&
+           memcmp(a->code, b->code, sizeof a->code) == 0;
+}
+
+static tl_joint_group *open_joint_group(tl_header *h, const tl_joint_record *j) {
+    if (h->joint_groups >= h->capacity[TL_COUNT_JOINTGROUP] ||
+        h->joint_rows + j->rows > h->capacity[TL_COUNT_JOINTROW]) {
+        return NULL;
+    }
+    tl_joint_group *g = &tl_joint_group_pool(h)[h->joint_groups++];
+    memset(g, 0, sizeof *g);
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        g->qa[3][k] = g->qb[3][k] = 1.0f;
+    }
+    g->rows = j->rows, g->fixed = j->fixed;
+    g->first_row = h->joint_rows;
+    g->free_axis = j->free_axis == TL_NONE ? 0u : j->free_axis;
+    memcpy(g->code, j->code, sizeof g->code);
+    memset(tl_joint_row_pool(h) + g->first_row, 0, j->rows * sizeof(tl_joint_row));
+    h->joint_rows += j->rows;
+    return g;
+}
+
+static void fill_lane(const tl_step *step, tl_joint_group *g, uint32_t joint) {
+    tl_header *h = step->h;
+    const tl_joint_record *j = &tl_joints(h)[joint];
+    const tl_joint_state *s = &tl_joint_states(h)[joint];
+    uint32_t k = g->lanes++;
+    g->a[k] = tl_body_row(h)[j->body_a];
+    g->b[k] = tl_body_row(h)[j->body_b];
+    g->joint[k] = joint;
+    talus_pose a = j->place_a, b = j->place_b;
+    /* A body without a row stands at the origin: its frame is given in the world. */
+    if (g->a[k] == 0) {
+        talus_pose body = tl_row_pose_of(&tl_body_pose(h)[j->body_a]);
+        a = tl_pose_mul(&body, &a);
+    }
+    if (g->b[k] == 0) {
+        talus_pose body = tl_row_pose_of(&tl_body_pose(h)[j->body_b]);
+        b = tl_pose_mul(&body, &b);
+    }
+    g->pa[0][k] = a.position.x, g->pa[1][k] = a.position.y, g->pa[2][k] = a.position.z;
+    g->pb[0][k] = b.position.x, g->pb[1][k] = b.position.y, g->pb[2][k] = b.position.z;
+    g->qa[0][k] = a.rotation.x, g->qa[1][k] = a.rotation.y, g->qa[2][k] = a.rotation.z, g->qa[3][k] = a.rotation.w;
+    g->qb[0][k] = b.rotation.x, g->qb[1][k] = b.rotation.y, g->qb[2][k] = b.rotation.z, g->qb[3][k] = b.rotation.w;
+    tl_joint_row *rows = tl_joint_row_pool(h) + g->first_row;
+    for (uint32_t r = 0; r < j->rows; r++) {
+        const tl_joint_param *p = &j->param[r];
+        rows[r].lower[k] = p->lower, rows[r].upper[k] = p->upper;
+        rows[r].stiffness[k] = p->stiffness, rows[r].damping[k] = p->damping;
+        rows[r].speed[k] = p->speed, rows[r].most[k] = p->most, rows[r].per_mass[k] = p->per_mass;
+        rows[r].impulse[k] = s->impulse[r] * step->warm_scale;
+    }
+    tl_row8 *moves = tl_row_moved(h);
+    moves[g->a[k]].f[7] = moves[g->b[k]].f[7] = 1.0f;
+}
+
+/* Awake joints by colour; counting sort. */
+static uint32_t order_joints(tl_header *h) {
+    uint32_t start[TL_COLORS + 2u], total = 0;
+    const uint32_t *awake = tl_awake_joint(h);
+    uint32_t *order = tl_joint_order(h);
+    memset(start, 0, sizeof start);
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        start[tl_joints(h)[awake[k]].color]++;
+    }
+    for (uint32_t i = 0; i <= TL_COLORS; i++) {
+        uint32_t n = start[i];
+        start[i] = total;
+        total += n;
+    }
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        order[start[tl_joints(h)[awake[k]].color]++] = awake[k];
+    }
+    return total;
+}
+
+/* The open group of a joint's kind in its colour that still has a free lane. */
+static tl_joint_group *find_group(tl_header *h, uint32_t first, uint32_t joint) {
+    const tl_joint_record *joints = tl_joints(h), *j = &joints[joint];
+    const uint32_t *rows = tl_body_row(h);
+    for (uint32_t i = h->joint_groups; i-- > first;) {
+        tl_joint_group *g = &tl_joint_group_pool(h)[i];
+        int shared = j->color == TL_COLORS && (holds_row(g->a, g->b, g->lanes, rows[j->body_a]) ||
+                                               holds_row(g->a, g->b, g->lanes, rows[j->body_b]));
+        if (g->lanes < TL_LANES && !shared && same_kind(&joints[g->joint[0]], j)) {
+            return g;
+        }
+        if (j->color == TL_COLORS || h->joint_groups - i > 16u) { /* looking far back costs more than a lane */
+            break;
+        }
+    }
+    return NULL;
+}
+
+void tl_stage_joint_groups(tl_step *step) {
+    tl_header *h = step->h;
+    h->joint_groups = h->joint_rows = 0;
+    uint32_t count = order_joints(h), color = TL_NONE, first = 0, dropped = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t joint = tl_joint_order(h)[k];
+        const tl_joint_record *j = &tl_joints(h)[joint];
+        if (j->color != color) {
+            color = j->color;
+            first = h->joint_groups;
+        }
+        if (j->rows == 0) {
+            continue;
+        }
+        tl_joint_group *g = find_group(h, first, joint);
+        if (!g) {
+            g = open_joint_group(h, j);
+        }
+        if (!g) {
+            dropped++;
+            continue;
+        }
+        fill_lane(step, g, joint);
+    }
+    h->counters.joints_solved = count - dropped;
+    h->counters.joints_sleeping = h->joints.used - h->awake_joints;
+    h->counters.rows.dropped += dropped;
+}

@@ -1,0 +1,186 @@
+/* Joint rows: eight joints of one kind at a time become Jacobians, errors and effective masses. They are made anew in every
+ * sub-step from the bodies' present poses, so that a joint does not stretch while its bodies turn.
+ *
+ * Angles are read off the relative quaternion: the twist about an axis is 2 atan2(q_axis, w), the swing of that axis
+ * 2 atan2(|q_others|, |(q_axis, w)|) (Dobrowolski, "Swing-twist decomposition in Clifford algebra", 2015). */
+#include "base/trig_lanes.h"
+
+typedef struct joint_bodies {
+    v8 xa, xb;
+    k8 ka, kb;
+    tl_f8 ma, mb, ta, tb;
+    v8 pa, pb;     /* the frames' origins in the world */
+    v8 a[3], b[3]; /* the frames' axes in the world */
+    q8 turn;       /* of frame b in frame a, w >= 0 */
+} joint_bodies;
+
+static inline void axes_of(q8 q, v8 out[3]) {
+    v8 one = v8_of(tl_f8_set1(1.0f), tl_f8_set1(1.0f), tl_f8_set1(1.0f));
+    k8 k = k8_of(q, one);
+    out[0] = k.x, out[1] = k.y, out[2] = k.z;
+}
+
+static void load_joint_bodies(const tl_step *step, const tl_joint_group *g, joint_bodies *c) {
+    tl_f8 r[8];
+    const float *poses = tl_row_pose(step->h)->f, *frames = tl_row_frame(step->h)->f;
+    const float *velocities = tl_row_velocity(step->h)->f;
+    tl_f8_load_rows(poses, g->a, r);
+    q8 qa = q8_of(r[3], r[4], r[5], r[6]);
+    c->xa = v8_of(r[0], r[1], r[2]);
+    tl_f8_load_rows(poses, g->b, r);
+    q8 qb = q8_of(r[3], r[4], r[5], r[6]);
+    c->xb = v8_of(r[0], r[1], r[2]);
+    tl_f8_load_rows(frames, g->a, r);
+    c->ka = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
+    tl_f8_load_rows(frames, g->b, r);
+    c->kb = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
+    tl_f8_load_rows(velocities, g->a, r);
+    c->ma = r[6], c->ta = r[7];
+    tl_f8_load_rows(velocities, g->b, r);
+    c->mb = r[6], c->tb = r[7];
+    c->pa = v8_add(c->xa, q8_rotate(qa, v8_load(g->pa[0])));
+    c->pb = v8_add(c->xb, q8_rotate(qb, v8_load(g->pb[0])));
+    q8 fa = q8_mul(qa, q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3])));
+    q8 fb = q8_mul(qb, q8_of(tl_f8_load(g->qb[0]), tl_f8_load(g->qb[1]), tl_f8_load(g->qb[2]), tl_f8_load(g->qb[3])));
+    axes_of(fa, c->a);
+    axes_of(fb, c->b);
+    q8 t = q8_mul(q8_conjugate(fa), fb);
+    tl_m8 flip = tl_f8_lt(t.w, tl_f8_zero());
+    c->turn = q8_of(tl_f8_select(flip, tl_f8_neg(t.x), t.x), tl_f8_select(flip, tl_f8_neg(t.y), t.y),
+                    tl_f8_select(flip, tl_f8_neg(t.z), t.z), tl_f8_select(flip, tl_f8_neg(t.w), t.w));
+}
+
+static inline int is_linear_row(uint32_t code) {
+    uint32_t type = code % TL_ROW_TYPES;
+    return type < TL_ROW_ANGULAR || type == TL_ROW_DISTANCE;
+}
+
+static inline tl_f8 turn_part(q8 q, uint32_t axis) { return axis == 0 ? q.x : axis == 1 ? q.y : q.z; }
+
+/* The direction and the error of an angular row. */
+static void angular_row(const joint_bodies *c, uint32_t type, uint32_t free_axis, v8 *axis, tl_f8 *error) {
+    tl_f8 two = tl_f8_set1(2.0f);
+    if (type < TL_ROW_SWING) { /* twist: its rate is w . (a + b) / (1 + a . b) */
+        uint32_t k = type - TL_ROW_ANGULAR;
+        tl_f8 scale = tl_f8_max(tl_f8_add(tl_f8_set1(1.0f), v8_dot(c->a[k], c->b[k])), tl_f8_set1(0.05f));
+        *axis = v8_scale(v8_add(c->a[k], c->b[k]), tl_f8_div(tl_f8_set1(1.0f), scale));
+        *error = tl_f8_mul(two, tl_f8_atan2(turn_part(c->turn, k), c->turn.w));
+    } else if (type < TL_ROW_CONE) {
+        uint32_t k = type - TL_ROW_SWING;
+        *axis = c->a[k];
+        *error = v8_dot(v8_cross(c->a[free_axis], c->b[free_axis]), c->a[k]);
+    } else {
+        uint32_t k = type - TL_ROW_CONE;
+        tl_f8 p = turn_part(c->turn, (k + 1u) % 3u), q = turn_part(c->turn, (k + 2u) % 3u), t = turn_part(c->turn, k);
+        tl_f8 across = tl_f8_sqrt(tl_f8_mad(tl_f8_mul(p, p), q, q));
+        tl_f8 along = tl_f8_sqrt(tl_f8_mad(tl_f8_mul(t, t), c->turn.w, c->turn.w));
+        v8 e = v8_cross(c->a[k], c->b[k]);
+        tl_f8 l = tl_f8_sqrt(v8_dot(e, e));
+        tl_m8 ok = tl_f8_gt(l, tl_f8_set1(1e-6f));
+        *axis = v8_select(ok, v8_scale(e, inverse_or_zero(l)), c->a[(k + 1u) % 3u]);
+        *error = tl_f8_mul(two, tl_f8_atan2(across, along));
+    }
+}
+
+static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t code, uint32_t free_axis) {
+    uint32_t type = code % TL_ROW_TYPES;
+    v8 d = v8_sub(c->pb, c->pa), n, ja, jb;
+    tl_f8 error, mass;
+    if (is_linear_row(code)) {
+        if (type == TL_ROW_DISTANCE) {
+            error = tl_f8_sqrt(v8_dot(d, d));
+            tl_m8 ok = tl_f8_gt(error, tl_f8_set1(1e-9f));
+            n = v8_select(ok, v8_scale(d, inverse_or_zero(error)), c->a[0]);
+        } else {
+            n = c->a[type - TL_ROW_LINEAR];
+            error = v8_dot(n, d);
+        }
+        ja = k8_mul(&c->ka, v8_cross(v8_sub(c->pb, c->xa), n));
+        jb = k8_mul(&c->kb, v8_cross(v8_sub(c->pb, c->xb), n));
+        mass = tl_f8_add(c->ma, c->mb);
+    } else {
+        angular_row(c, type, free_axis, &n, &error);
+        ja = k8_mul(&c->ka, n);
+        jb = k8_mul(&c->kb, n);
+        mass = tl_f8_zero();
+    }
+    mass = tl_f8_add(mass, tl_f8_add(tl_f8_mul(c->ta, v8_dot(ja, ja)), tl_f8_mul(c->tb, v8_dot(jb, jb))));
+    v8_store(row->n[0], n);
+    v8_store(row->ja[0], ja);
+    v8_store(row->jb[0], jb);
+    tl_f8_store(row->error, error);
+    tl_f8_store(row->mass, inverse_or_zero(mass));
+    tl_f8 below = tl_f8_sub(error, tl_f8_load(row->lower)), above = tl_f8_sub(tl_f8_load(row->upper), error);
+    tl_f8_store(row->at_lower, tl_f8_and_mask(tl_f8_le(below, above), tl_f8_set1(1.0f)));
+}
+
+/* A pivot below this share of its diagonal entry stands for rows that say the same thing twice. */
+#define LEAST_PIVOT 1e-6f
+
+/* L D L^T of the equalities' matrix, row by row; the diagonal holds 1 / D (Golub and Van Loan, 4.1.2). */
+static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
+    tl_f8 linear = tl_f8_add(c->ma, c->mb), l[21], d[6];
+    for (uint32_t i = 0; i < g->fixed; i++) {
+        v8 ni = v8_load(rows[i].n[0]), jai = v8_load(rows[i].ja[0]), jbi = v8_load(rows[i].jb[0]);
+        for (uint32_t j = 0; j <= i; j++) {
+            v8 ja = v8_load(rows[j].ja[0]), jb = v8_load(rows[j].jb[0]);
+            tl_f8 k = tl_f8_add(tl_f8_mul(c->ta, v8_dot(jai, ja)), tl_f8_mul(c->tb, v8_dot(jbi, jb)));
+            if (is_linear_row(g->code[i]) && is_linear_row(g->code[j])) {
+                k = tl_f8_add(k, tl_f8_mul(linear, v8_dot(ni, v8_load(rows[j].n[0]))));
+            }
+            tl_f8 whole = k;
+            for (uint32_t m = 0; m < j; m++) { /* l[i][m] holds L D until the row is done */
+                tl_f8 other = j == i ? tl_f8_mul(l[i * (i + 1u) / 2u + m], d[m]) : l[j * (j + 1u) / 2u + m];
+                k = tl_f8_sub(k, tl_f8_mul(l[i * (i + 1u) / 2u + m], other));
+            }
+            if (j < i) {
+                l[i * (i + 1u) / 2u + j] = k;
+            } else {
+                tl_m8 ok = tl_f8_gt(k, tl_f8_mul(whole, tl_f8_set1(LEAST_PIVOT)));
+                d[i] = tl_f8_and_mask(ok, inverse_or_zero(k));
+                for (uint32_t m = 0; m < i; m++) {
+                    l[i * (i + 1u) / 2u + m] = tl_f8_mul(l[i * (i + 1u) / 2u + m], d[m]);
+                }
+                l[i * (i + 1u) / 2u + i] = d[i];
+            }
+        }
+    }
+    for (uint32_t i = 0; i < g->fixed * (g->fixed + 1u) / 2u; i++) {
+        tl_f8_store(g->factor[i], l[i]);
+    }
+}
+
+static void prepare_joints(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        joint_bodies c;
+        load_joint_bodies(step, g, &c);
+        for (uint32_t k = 0; k < g->rows; k++) {
+            make_joint_row(&c, &rows[k], g->code[k], g->free_axis);
+        }
+        factor_equalities(&c, g, rows);
+    }
+}
+
+/* Impulses back to the joints, with the mean force and torque on b. */
+static void store_joints(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        for (uint32_t lane = 0; lane < g->lanes; lane++) {
+            tl_joint_state *s = &tl_joint_states(step->h)[g->joint[lane]];
+            for (uint32_t k = 0; k < 3u; k++) {
+                s->force[k] = s->torque[k] = 0.0f;
+            }
+            for (uint32_t r = 0; r < g->rows; r++) {
+                float *sum = is_linear_row(g->code[r]) ? s->force : s->torque;
+                float strength = rows[r].impulse[lane] * step->inverse_sub;
+                s->impulse[r] = rows[r].impulse[lane];
+                for (uint32_t k = 0; k < 3u; k++) {
+                    sum[k] += rows[r].n[k][lane] * strength;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,211 @@
+/* Contacts solved eight manifolds at a time by projected Gauss-Seidel on impulses: Coulomb's cone at the manifold's centre,
+ * friction about the normal, rolling resistance, then the normal impulses point by point.
+ *
+ * The sub-stepped soft constraint follows Catto, "Soft constraints" (GDC 2011) and "Solver2D" (2024): the pass with bias takes
+ * overlap back as a damped spring, the pass without takes the speed of that out again. */
+
+typedef struct pair_velocity {
+    v8 va, ua, vb, ub;
+    tl_f8 ma, ta, mb, tb;
+} pair_velocity;
+
+static inline void load_pair(const tl_step *step, const uint32_t *a, const uint32_t *b, pair_velocity *p) {
+    const float *velocities = tl_row_velocity(step->h)->f;
+    tl_f8 r[8];
+    tl_f8_load_rows(velocities, a, r);
+    p->va = v8_of(r[0], r[1], r[2]), p->ua = v8_of(r[3], r[4], r[5]), p->ma = r[6], p->ta = r[7];
+    tl_f8_load_rows(velocities, b, r);
+    p->vb = v8_of(r[0], r[1], r[2]), p->ub = v8_of(r[3], r[4], r[5]), p->mb = r[6], p->tb = r[7];
+}
+
+static inline void store_pair(const tl_step *step, const uint32_t *a, const uint32_t *b, const pair_velocity *p) {
+    float *velocities = tl_row_velocity(step->h)->f;
+    const tl_f8 ra[8] = {p->va.x, p->va.y, p->va.z, p->ua.x, p->ua.y, p->ua.z, p->ma, p->ta};
+    const tl_f8 rb[8] = {p->vb.x, p->vb.y, p->vb.z, p->ub.x, p->ub.y, p->ub.z, p->mb, p->tb};
+    tl_f8_store_rows(velocities, a, ra);
+    tl_f8_store_rows(velocities, b, rb);
+}
+
+/* The relative velocity along a row, of b against a. */
+static inline tl_f8 row_speed(const pair_velocity *p, v8 n, v8 ja, v8 jb) {
+    return tl_f8_add(v8_dot(n, v8_sub(p->vb, p->va)), tl_f8_sub(v8_dot(jb, p->ub), v8_dot(ja, p->ua)));
+}
+static inline tl_f8 spin_speed(const pair_velocity *p, v8 ja, v8 jb) {
+    return tl_f8_sub(v8_dot(jb, p->ub), v8_dot(ja, p->ua));
+}
+
+static inline void apply_spin(pair_velocity *p, v8 ja, v8 jb, tl_f8 impulse) {
+    p->ua = v8_msub(p->ua, tl_f8_mul(impulse, p->ta), ja);
+    p->ub = v8_mad(p->ub, tl_f8_mul(impulse, p->tb), jb);
+}
+static inline void apply_row(pair_velocity *p, v8 n, v8 ja, v8 jb, tl_f8 impulse) {
+    p->va = v8_msub(p->va, tl_f8_mul(impulse, p->ma), n);
+    p->vb = v8_mad(p->vb, tl_f8_mul(impulse, p->mb), n);
+    apply_spin(p, ja, jb, impulse);
+}
+
+static inline void solve_tangent(tl_contact_group *g, pair_velocity *p, v8 n, tl_f8 pressure) {
+    v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
+    v8 ja1 = v8_load(g->ja1[0]), jb1 = v8_load(g->jb1[0]), ja2 = v8_load(g->ja2[0]), jb2 = v8_load(g->jb2[0]);
+    tl_f8 s1 = row_speed(p, t1, ja1, jb1), s2 = row_speed(p, t2, ja2, jb2);
+    tl_f8 k11 = tl_f8_load(g->k11), k12 = tl_f8_load(g->k12), k22 = tl_f8_load(g->k22);
+    tl_f8 old1 = tl_f8_load(g->tangent_impulse[0]), old2 = tl_f8_load(g->tangent_impulse[1]);
+    tl_f8 new1 = tl_f8_sub(old1, tl_f8_mad(tl_f8_mul(k11, s1), k12, s2));
+    tl_f8 new2 = tl_f8_sub(old2, tl_f8_mad(tl_f8_mul(k12, s1), k22, s2));
+    /* Within the static cone the impulse stays; outside it slides at the dynamic one. */
+    tl_f8 square = tl_f8_mad(tl_f8_mul(new1, new1), new2, new2);
+    tl_f8 hold = tl_f8_mul(tl_f8_load(g->static_friction), pressure);
+    tl_f8 slide = tl_f8_mul(tl_f8_load(g->dynamic_friction), pressure);
+    tl_m8 slides = tl_f8_gt(square, tl_f8_mul(hold, hold));
+    tl_f8 scale = tl_f8_div(slide, tl_f8_select(slides, tl_f8_sqrt(square), tl_f8_set1(1.0f)));
+    scale = tl_f8_select(slides, scale, tl_f8_set1(1.0f));
+    new1 = tl_f8_mul(new1, scale);
+    new2 = tl_f8_mul(new2, scale);
+    tl_f8_store(g->tangent_impulse[0], new1);
+    tl_f8_store(g->tangent_impulse[1], new2);
+    apply_row(p, t1, ja1, jb1, tl_f8_sub(new1, old1));
+    apply_row(p, t2, ja2, jb2, tl_f8_sub(new2, old2));
+}
+
+static inline void solve_twist(tl_contact_group *g, pair_velocity *p, tl_f8 pressure) {
+    v8 ja = v8_load(g->jan[0]), jb = v8_load(g->jbn[0]);
+    tl_f8 most = tl_f8_mul(tl_f8_mul(tl_f8_load(g->static_friction), tl_f8_load(g->lever)), pressure);
+    tl_f8 old = tl_f8_load(g->twist_impulse);
+    tl_f8 now = tl_f8_sub(old, tl_f8_mul(tl_f8_load(g->twist_mass), spin_speed(p, ja, jb)));
+    now = tl_f8_max(tl_f8_min(now, most), tl_f8_neg(most));
+    tl_f8_store(g->twist_impulse, now);
+    apply_spin(p, ja, jb, tl_f8_sub(now, old));
+}
+
+/* Resists rolling about both tangents by at most the normal force times the rolling lever. */
+static void solve_rolling(const tl_step *step, tl_contact_group *g, pair_velocity *p, v8 n, tl_f8 pressure) {
+    tl_f8 r[8];
+    const float *frames = tl_row_frame(step->h)->f;
+    tl_f8_load_rows(frames, g->a, r);
+    k8 ka = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
+    tl_f8_load_rows(frames, g->b, r);
+    k8 kb = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
+    v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
+    v8 ja1 = k8_mul(&ka, t1), jb1 = k8_mul(&kb, t1), ja2 = k8_mul(&ka, t2), jb2 = k8_mul(&kb, t2);
+    tl_f8 mass = tl_f8_load(g->roll_mass), most = tl_f8_mul(tl_f8_load(g->rolling), pressure);
+    tl_f8 old1 = tl_f8_load(g->rolling_impulse[0]), old2 = tl_f8_load(g->rolling_impulse[1]);
+    tl_f8 new1 = tl_f8_sub(old1, tl_f8_mul(mass, spin_speed(p, ja1, jb1)));
+    tl_f8 new2 = tl_f8_sub(old2, tl_f8_mul(mass, spin_speed(p, ja2, jb2)));
+    tl_f8 square = tl_f8_mad(tl_f8_mul(new1, new1), new2, new2);
+    tl_m8 over = tl_f8_gt(square, tl_f8_mul(most, most));
+    tl_f8 scale = tl_f8_div(most, tl_f8_select(over, tl_f8_sqrt(square), tl_f8_set1(1.0f)));
+    scale = tl_f8_select(over, scale, tl_f8_set1(1.0f));
+    new1 = tl_f8_mul(new1, scale);
+    new2 = tl_f8_mul(new2, scale);
+    tl_f8_store(g->rolling_impulse[0], new1);
+    tl_f8_store(g->rolling_impulse[1], new2);
+    apply_spin(p, ja1, jb1, tl_f8_sub(new1, old1));
+    apply_spin(p, ja2, jb2, tl_f8_sub(new2, old2));
+}
+
+static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int with_bias) {
+    pair_velocity p;
+    tl_f8 r[8], zero = tl_f8_zero(), one = tl_f8_set1(1.0f);
+    const float *moves = tl_row_moved(step->h)->f;
+    load_pair(step, g->a, g->b, &p);
+    v8 n = v8_load(g->normal[0]);
+    tl_f8 pressure = zero;
+    for (uint32_t i = 0; i < g->points; i++) {
+        pressure = tl_f8_add(pressure, tl_f8_load(g->point[i].impulse));
+    }
+    solve_tangent(g, &p, n, pressure);
+    solve_twist(g, &p, pressure);
+    if (g->rolls) {
+        solve_rolling(step, g, &p, n, pressure);
+    }
+    tl_f8_load_rows(moves, g->a, r);
+    v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
+    tl_f8_load_rows(moves, g->b, r);
+    v8 db = v8_of(r[3], r[4], r[5]);
+    tl_f8 way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
+    tl_f8 inverse_h = tl_f8_set1(step->inverse_sub), rate = tl_f8_set1(step->bias_rate);
+    tl_f8 push = tl_f8_set1(-step->h->settings.push_speed);
+    tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
+    for (uint32_t i = 0; i < g->points; i++) {
+        tl_contact_lane_point *c = &g->point[i];
+        v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
+        tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
+        tl_m8 apart = tl_f8_gt(gap, zero);
+        tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h));
+        tl_f8 old = tl_f8_load(c->impulse), speed = row_speed(&p, n, ja, jb), now;
+        if (with_bias) {
+            bias = tl_f8_select(apart, bias, tl_f8_max(tl_f8_mul(gap, rate), push));
+            tl_f8 scale = tl_f8_select(apart, one, soft_mass);
+            tl_f8 give = tl_f8_mul(tl_f8_select(apart, zero, soft_impulse), old);
+            now = tl_f8_sub(tl_f8_sub(old, tl_f8_mul(tl_f8_mul(tl_f8_load(c->mass), scale), tl_f8_add(speed, bias))), give);
+        } else {
+            now = tl_f8_sub(old, tl_f8_mul(tl_f8_load(c->mass), tl_f8_add(speed, bias)));
+        }
+        now = tl_f8_max(now, zero);
+        tl_f8_store(c->impulse, now);
+        if (g->bounces) {
+            tl_f8_store(c->peak, tl_f8_max(tl_f8_load(c->peak), now));
+        }
+        apply_row(&p, n, ja, jb, tl_f8_sub(now, old));
+    }
+    store_pair(step, g->a, g->b, &p);
+}
+
+static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        solve_contact_group(step, &tl_group_pool(step->h)[i], 1);
+    }
+}
+
+static void relax_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        solve_contact_group(step, &tl_group_pool(step->h)[i], 0);
+    }
+}
+
+/* Applies the impulses that the last step ended with, before the first sub-step of this one. */
+static void warm_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        const tl_contact_group *g = &tl_group_pool(step->h)[i];
+        pair_velocity p;
+        load_pair(step, g->a, g->b, &p);
+        v8 n = v8_load(g->normal[0]), t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
+        apply_row(&p, t1, v8_load(g->ja1[0]), v8_load(g->jb1[0]), tl_f8_load(g->tangent_impulse[0]));
+        apply_row(&p, t2, v8_load(g->ja2[0]), v8_load(g->jb2[0]), tl_f8_load(g->tangent_impulse[1]));
+        apply_spin(&p, v8_load(g->jan[0]), v8_load(g->jbn[0]), tl_f8_load(g->twist_impulse));
+        for (uint32_t k = 0; k < g->points; k++) {
+            const tl_contact_lane_point *c = &g->point[k];
+            apply_row(&p, n, v8_load(c->ja[0]), v8_load(c->jb[0]), tl_f8_load(c->impulse));
+        }
+        store_pair(step, g->a, g->b, &p);
+    }
+}
+
+/* Newton's law of restitution, once a step: what met faster than the threshold leaves at its share of that speed. */
+static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    tl_f8 zero = tl_f8_zero(), threshold = tl_f8_set1(step->h->settings.restitution_speed);
+    for (uint32_t i = first; i < last; i++) {
+        tl_contact_group *g = &tl_group_pool(step->h)[i];
+        if (!g->bounces) {
+            continue;
+        }
+        pair_velocity p;
+        load_pair(step, g->a, g->b, &p);
+        v8 n = v8_load(g->normal[0]);
+        tl_f8 restitution = tl_f8_load(g->restitution);
+        for (uint32_t k = 0; k < g->points; k++) {
+            tl_contact_lane_point *c = &g->point[k];
+            v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
+            tl_f8 approach = tl_f8_load(c->approach), old = tl_f8_load(c->impulse);
+            tl_m8 bounces = tl_m8_and(tl_f8_gt(tl_f8_load(c->peak), zero), tl_f8_gt(approach, threshold));
+            bounces = tl_m8_and(bounces, tl_f8_gt(restitution, zero));
+            tl_f8 excess = tl_f8_sub(row_speed(&p, n, ja, jb), tl_f8_mul(restitution, approach));
+            tl_f8 now = tl_f8_max(tl_f8_sub(old, tl_f8_mul(tl_f8_load(c->mass), excess)), zero);
+            now = tl_f8_select(bounces, now, old);
+            /* What bounced is off: the next step starts it from nothing. */
+            tl_f8_store(c->impulse, tl_f8_select(bounces, zero, old));
+            apply_row(&p, n, ja, jb, tl_f8_sub(now, old));
+        }
+        store_pair(step, g->a, g->b, &p);
+    }
+}

@@ -1,0 +1,116 @@
+/* Joints solved eight at a time: drives, then limits, each row by projected Gauss-Seidel, then all equalities of a joint at
+ * once by their factored matrix. */
+
+static inline tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int linear) {
+    v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
+    return linear ? row_speed(p, v8_load(row->n[0]), ja, jb) : spin_speed(p, ja, jb);
+}
+
+static inline void joint_apply(pair_velocity *p, const tl_joint_row *row, int linear, tl_f8 impulse) {
+    v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
+    if (linear) {
+        apply_row(p, v8_load(row->n[0]), ja, jb, impulse);
+    } else {
+        apply_spin(p, ja, jb, impulse);
+    }
+}
+
+/* An implicit spring and damper, bounded in force: softness g = 1 / (h (c + h k)), speed it seeks (k e + c v) / (c + h k)
+ * (Catto, "Soft constraints", GDC 2011). */
+static void solve_drive(const tl_step *step, pair_velocity *p, tl_joint_row *row, int linear) {
+    tl_f8 h = tl_f8_set1(step->sub), one = tl_f8_set1(1.0f), mass = tl_f8_load(row->mass);
+    tl_f8 scale = tl_f8_select(tl_f8_gt(tl_f8_load(row->per_mass), tl_f8_zero()), mass, one);
+    tl_f8 k = tl_f8_mul(tl_f8_load(row->stiffness), scale), c = tl_f8_mul(tl_f8_load(row->damping), scale);
+    tl_f8 s = tl_f8_mad(c, h, k);
+    tl_f8 give = inverse_or_zero(tl_f8_mul(h, s));
+    tl_f8 error = tl_f8_sub(tl_f8_load(row->lower), tl_f8_load(row->error));
+    tl_f8 goal = tl_f8_mul(tl_f8_mad(tl_f8_mul(k, error), c, tl_f8_load(row->speed)), inverse_or_zero(s));
+    tl_f8 old = tl_f8_load(row->impulse), speed = joint_speed(p, row, linear);
+    tl_f8 excess = tl_f8_mad(tl_f8_sub(speed, goal), give, old);
+    tl_f8 now = tl_f8_sub(old, tl_f8_div(tl_f8_mul(mass, excess), tl_f8_mad(one, give, mass)));
+    tl_f8 most = tl_f8_mul(tl_f8_load(row->most), h);
+    now = tl_f8_max(tl_f8_min(now, most), tl_f8_neg(most));
+    now = tl_f8_and_mask(tl_f8_gt(s, tl_f8_zero()), now);
+    tl_f8_store(row->impulse, now);
+    joint_apply(p, row, linear, tl_f8_sub(now, old));
+}
+
+/* The nearer side of a range, hard or a spring, pushing one way only. */
+static void solve_range(const tl_step *step, pair_velocity *p, tl_joint_row *row, int linear, int with_bias) {
+    tl_f8 h = tl_f8_set1(step->sub), one = tl_f8_set1(1.0f), zero = tl_f8_zero(), mass = tl_f8_load(row->mass);
+    tl_m8 low = tl_f8_gt(tl_f8_load(row->at_lower), zero);
+    tl_f8 sign = tl_f8_select(low, one, tl_f8_set1(-1.0f)), error = tl_f8_load(row->error);
+    tl_f8 gap = tl_f8_select(low, tl_f8_sub(error, tl_f8_load(row->lower)), tl_f8_sub(tl_f8_load(row->upper), error));
+    tl_f8 old = tl_f8_mul(sign, tl_f8_load(row->impulse)), speed = tl_f8_mul(sign, joint_speed(p, row, linear));
+    tl_m8 apart = tl_f8_gt(gap, zero);
+    tl_f8 bias = tl_f8_mul(gap, tl_f8_set1(step->inverse_sub));
+    bias = tl_f8_select(apart, bias, with_bias ? tl_f8_mul(gap, tl_f8_set1(step->joint_rate)) : zero);
+    tl_f8 hard = tl_f8_max(tl_f8_sub(old, tl_f8_mul(mass, tl_f8_add(speed, bias))), zero);
+    tl_f8 k = tl_f8_load(row->stiffness), c = tl_f8_load(row->damping), s = tl_f8_mad(c, h, k);
+    tl_f8 give = inverse_or_zero(tl_f8_mul(h, s));
+    tl_f8 goal = tl_f8_neg(tl_f8_mul(tl_f8_mul(k, gap), inverse_or_zero(s)));
+    tl_f8 excess = tl_f8_mad(tl_f8_sub(speed, goal), give, old);
+    tl_f8 soft = tl_f8_sub(old, tl_f8_div(tl_f8_mul(mass, excess), tl_f8_mad(one, give, mass)));
+    soft = tl_f8_select(apart, zero, tl_f8_max(soft, zero));
+    tl_f8 now = tl_f8_select(tl_f8_gt(s, zero), soft, hard);
+    tl_f8_store(row->impulse, tl_f8_mul(sign, now));
+    joint_apply(p, row, linear, tl_f8_mul(sign, tl_f8_sub(now, old)));
+}
+
+static void solve_equalities(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
+                             int with_bias) {
+    tl_f8 x[6], rate = tl_f8_set1(with_bias ? step->joint_rate : 0.0f);
+    uint32_t n = g->fixed;
+    for (uint32_t i = 0; i < n; i++) {
+        tl_f8 error = tl_f8_sub(tl_f8_load(rows[i].error), tl_f8_load(rows[i].lower));
+        x[i] = tl_f8_neg(tl_f8_mad(joint_speed(p, &rows[i], is_linear_row(g->code[i])), rate, error));
+        for (uint32_t j = 0; j < i; j++) {
+            x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->factor[i * (i + 1u) / 2u + j]), x[j]));
+        }
+    }
+    for (uint32_t i = n; i-- > 0;) {
+        x[i] = tl_f8_mul(x[i], tl_f8_load(g->factor[i * (i + 1u) / 2u + i]));
+        for (uint32_t j = i + 1u; j < n; j++) {
+            x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->factor[j * (j + 1u) / 2u + i]), x[j]));
+        }
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        tl_f8_store(rows[i].impulse, tl_f8_add(tl_f8_load(rows[i].impulse), x[i]));
+        joint_apply(p, &rows[i], is_linear_row(g->code[i]), x[i]);
+    }
+}
+
+static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int with_bias) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        pair_velocity p;
+        load_pair(step, g->a, g->b, &p);
+        for (uint32_t k = g->rows; k-- > g->fixed;) {
+            int linear = is_linear_row(g->code[k]);
+            if (g->code[k] / TL_ROW_TYPES == TL_ROW_DRIVE) {
+                solve_drive(step, &p, &rows[k], linear);
+            } else {
+                solve_range(step, &p, &rows[k], linear, with_bias);
+            }
+        }
+        solve_equalities(step, g, rows, &p, with_bias);
+        store_pair(step, g->a, g->b, &p);
+    }
+}
+
+static void solve_joints(const tl_step *step, uint32_t first, uint32_t last) { run_joints(step, first, last, 1); }
+static void relax_joints(const tl_step *step, uint32_t first, uint32_t last) { run_joints(step, first, last, 0); }
+
+static void warm_joints(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        pair_velocity p;
+        load_pair(step, g->a, g->b, &p);
+        for (uint32_t k = 0; k < g->rows; k++) {
+            joint_apply(&p, &rows[k], is_linear_row(g->code[k]), tl_f8_load(rows[k].impulse));
+        }
+        store_pair(step, g->a, g->b, &p);
+    }
+}

@@ -1,0 +1,168 @@
+/* The records of the block's state columns. Every member has the same size, so that a hash by members is the same in
+ * either byte order; nothing is a pointer. */
+#ifndef TL_RECORDS_H
+#define TL_RECORDS_H
+
+#include "collide/collide.h"
+#include "stage/store/rows.h"
+#include "talus/body.h"
+#include "talus/events.h"
+#include "talus/joint.h"
+#include "talus/shape.h"
+
+#define TL_NONE 0xffffffffu
+
+/* body_meta.flags; the low two bits are the type */
+enum {
+    TL_BODY_TYPE = 3,
+    TL_BODY_ALIVE = 4,
+    TL_BODY_AWAKE = 8,
+    TL_BODY_CAN_SLEEP = 16,
+    TL_BODY_MASS_SET = 32, /* by the caller */
+    TL_BODY_GYRO = 64,     /* its principal inertias differ */
+    TL_BODY_FORCE = 128,   /* body_force is not zero */
+    TL_BODY_LOCKS = 8      /* the shift of the locks */
+};
+
+typedef struct tl_body_meta {
+    uint32_t flags, generation;
+    uint32_t first_shape, first_contact, first_joint; /* contact and joint links: twice the index, plus the side */
+    uint32_t sleep_next;                              /* ring of an island that sleeps */
+    uint32_t free_next;
+    uint32_t moves; /* kinematic: its velocity is not zero */
+} tl_body_meta;
+
+typedef struct tl_body_inertia {
+    float inverse_mass;
+    float s[3]; /* square roots of the principal inverse inertias */
+    float gravity_scale, linear_damping, angular_damping;
+    float reach; /* m: no point of its shapes is further from the centre of mass */
+} tl_body_inertia;
+
+typedef struct tl_body_quiet {
+    float time;  /* s below the sleep speed */
+    float speed; /* m/s, when half of the time was over */
+} tl_body_quiet;
+
+/* shape_meta.flags */
+enum { TL_SHAPE_ALIVE = 1, TL_SHAPE_SENSOR = 2, TL_SHAPE_EVENTS = 4, TL_SHAPE_MOVED = 8 };
+
+typedef struct tl_shape_meta {
+    uint32_t flags, generation, body, next; /* next in the body, or in the free list */
+    uint32_t node;                          /* in the tree */
+    int32_t group;
+    float density;
+    uint32_t reserved;
+} tl_shape_meta;
+
+typedef struct tl_material {
+    float static_friction, dynamic_friction, restitution, rolling_resistance;
+    uint32_t friction_combine, restitution_combine;
+} tl_material;
+
+typedef struct tl_tree_node {
+    talus_aabb box;
+    uint32_t parent; /* in the free list: the next one */
+    uint32_t child[2]; /* child[0] TL_NONE: a leaf, child[1] then is the shape */
+    uint32_t height;   /* 0 for a leaf */
+} tl_tree_node;
+
+typedef struct tl_contact_head {
+    float normal[3];   /* in the mass frame of body a, from a to b */
+    float friction[3]; /* N s, impulse of friction on b, world axes */
+    float twist;       /* N m s about the normal */
+    float reserved;
+} tl_contact_head;
+
+typedef struct tl_contact_point_record {
+    float a[3], b[3]; /* m: the touching points of the two surfaces, each in its body's mass frame */
+    float impulse;    /* N s, of the last sub-step */
+    uint32_t id;
+} tl_contact_point_record;
+
+typedef struct tl_contact_points {
+    tl_contact_point_record p[TL_MANIFOLD_POINTS];
+} tl_contact_points;
+
+/* contact_meta.flags */
+enum {
+    TL_CONTACT_ALIVE = 1,
+    TL_CONTACT_TOUCHING = 2, /* has rows: began to touch */
+    TL_CONTACT_SENSOR = 4,
+    TL_CONTACT_EVENTS = 8,
+    TL_CONTACT_COLORED = 16,
+    TL_CONTACT_CLOSE = 32, /* surfaces overlap or meet: what begin and end events tell */
+    TL_CONTACT_FRESH = 64  /* never went through the narrow stage */
+};
+
+typedef struct tl_contact_meta {
+    uint32_t flags, count; /* points */
+    uint32_t body_a, body_b;
+    uint32_t motion; /* sum of both bodies' motion counts (micrometres) when the manifold was made */
+    uint32_t slack;  /* micrometres that the pair may move before it has to be looked at again */
+    uint32_t color;
+    uint32_t awake_index; /* in awake_contact, or TL_NONE */
+} tl_contact_meta;
+
+typedef struct tl_contact_material {
+    float static_friction, dynamic_friction, restitution, rolling;
+} tl_contact_material;
+
+/* The lists of a body's contacts: links hold twice the contact's index plus the side (0: a, 1: b). */
+typedef struct tl_contact_link {
+    uint32_t shape_a, shape_b;
+    uint32_t next[2], previous[2];
+} tl_contact_link;
+
+/* What a row of a joint holds; the code of a row is type + TL_ROW_TYPES * mode. */
+enum {
+    TL_ROW_LINEAR = 0,  /* + axis */
+    TL_ROW_ANGULAR = 3, /* + axis: the twist about it */
+    TL_ROW_SWING = 6,   /* + axis: one of two locked axes beside a free one */
+    TL_ROW_CONE = 9,    /* + axis */
+    TL_ROW_DISTANCE = 12,
+    TL_ROW_TYPES = 16
+};
+enum { TL_ROW_EQUAL = 0, TL_ROW_RANGE = 1, TL_ROW_DRIVE = 2 };
+
+enum { TL_JOINT_ALIVE = 1, TL_JOINT_COLLIDE = 2 };
+
+typedef struct tl_joint_param {
+    float lower, upper, stiffness, damping, speed, most, per_mass;
+} tl_joint_param;
+
+typedef struct tl_joint_axis_record {
+    uint32_t mode;
+    float lower, upper, stiffness, damping;
+} tl_joint_axis_record;
+
+typedef struct tl_joint_drive_record {
+    uint32_t enabled, acceleration;
+    float position, speed, stiffness, damping, most;
+} tl_joint_drive_record;
+
+typedef struct tl_joint_record {
+    uint32_t flags, generation, body_a, body_b;
+    uint32_t next[2], previous[2]; /* as in tl_contact_link */
+    uint32_t color, awake_index, free_next;
+    uint32_t rows, fixed, code[TL_JOINT_ROWS];
+    uint32_t free_axis; /* the one angular axis beside two locked ones, or TL_NONE */
+    talus_pose place_a, place_b; /* the frames in the mass frames */
+    talus_pose frame_a, frame_b; /* as the caller gave them */
+    tl_joint_axis_record axis[6];
+    tl_joint_drive_record drive[6];
+    uint32_t cone_axis; /* TL_NONE: none */
+    float cone_angle, cone_stiffness, cone_damping;
+    uint32_t distance_enabled;
+    float distance_lower, distance_upper, distance_stiffness, distance_damping;
+    float break_force, break_torque;
+    tl_joint_param param[TL_JOINT_ROWS];
+} tl_joint_record;
+
+typedef struct tl_joint_state {
+    float impulse[TL_JOINT_ROWS]; /* N s, N m s, of the last sub-step */
+    float force[3], torque[3];    /* N, N m on b over the last step */
+    float linear_error, angular_error;
+} tl_joint_state;
+
+#endif

@@ -1,0 +1,86 @@
+/* What the solver streams: body rows of 32 bytes and constraint groups eight lanes wide.
+ *
+ * Angular velocities are whitened: with the inverse inertia I^-1 = K^T K a body's row holds u, where w = K^T u. An angular
+ * Jacobian is then j = K (r x n), used alike to read a velocity (j . u) and to apply an impulse (u += j lambda), so that no
+ * inertia is needed in the solver's loop. K = diag(s) R^T with R the frame's rotation. */
+#ifndef TL_ROWS_H
+#define TL_ROWS_H
+
+#include "talus/types.h"
+
+#define TL_LANES 8u
+#define TL_COLORS 64u
+
+typedef struct tl_row8 {
+    float f[8];
+} tl_row8;
+
+/* Members of a row8, by column:
+ *   body_pose, row_pose      centre of mass x y z (m), rotation of the principal axes x y z w, 0
+ *   body_velocity            v x y z (m/s), w x y z (rad/s), 0, 0
+ *   body_frame               the mass frame in the body's frame: centre x y z, rotation x y z w, 0
+ *   body_force               force x y z (N), torque x y z (N m), 0, 0
+ *   row_velocity, row_before v x y z, u x y z, inverse mass (1/kg), 1 if impulses turn it and 0 if not
+ *   row_moved                since the step began: way of the centre x y z, sum of h u x y z, 0, 0
+ *   row_frame                rotation of K's frame x y z w, s x y z, 1 if the gyroscopic term counts
+ *   row_force                acceleration x y z, whitened angular acceleration x y z, damping factors of v and of u
+ *   shape_place              the shape in the mass frame: x y z, rotation x y z w, largest reach from the centre (m)
+ *   shape_fat                lower x y z, upper x y z (m), 0, 0 */
+
+typedef struct tl_contact_lane_point {
+    float ja[3][TL_LANES], jb[3][TL_LANES]; /* whitened angular Jacobians */
+    float gap[TL_LANES];                    /* m, separation when the step began */
+    float mass[TL_LANES];                   /* kg, effective */
+    float impulse[TL_LANES];                /* N s, accumulated over a sub-step */
+    float approach[TL_LANES];               /* m/s, the speed at which the surfaces will meet; 0 if they do not bounce */
+    float peak[TL_LANES];                   /* N s, the largest impulse of the step */
+} tl_contact_lane_point;
+
+typedef struct tl_contact_group {
+    uint32_t a[TL_LANES], b[TL_LANES]; /* body rows */
+    uint32_t contact[TL_LANES];
+    uint32_t lanes, points;            /* how many are in use */
+    uint32_t bounces, rolls;           /* whether any lane has restitution, rolling resistance */
+    uint32_t reserved[4];
+    float normal[3][TL_LANES];  /* from a to b */
+    float tangent[3][TL_LANES]; /* the second tangent is normal x tangent */
+    float ja1[3][TL_LANES], jb1[3][TL_LANES], ja2[3][TL_LANES], jb2[3][TL_LANES];
+    float jan[3][TL_LANES], jbn[3][TL_LANES];      /* about the normal */
+    float k11[TL_LANES], k12[TL_LANES], k22[TL_LANES]; /* inverse of the tangents' 2 x 2 matrix */
+    float twist_mass[TL_LANES], lever[TL_LANES];   /* m: of the friction about the normal */
+    float static_friction[TL_LANES], dynamic_friction[TL_LANES], restitution[TL_LANES], rolling[TL_LANES];
+    float tangent_impulse[2][TL_LANES], twist_impulse[TL_LANES], rolling_impulse[2][TL_LANES];
+    float roll_mass[TL_LANES];
+    tl_contact_lane_point point[4];
+} tl_contact_group;
+
+#define TL_JOINT_ROWS 12u
+
+/* One scalar row of eight joints. */
+typedef struct tl_joint_row {
+    float n[3][TL_LANES];                   /* linear direction or angular axis */
+    float ja[3][TL_LANES], jb[3][TL_LANES]; /* whitened */
+    float error[TL_LANES];                  /* m or rad */
+    float lower[TL_LANES], upper[TL_LANES]; /* of the position, or target twice for a drive */
+    float stiffness[TL_LANES], damping[TL_LANES];
+    float speed[TL_LANES];                  /* target of a drive */
+    float most[TL_LANES];                   /* N or N m: bound of the force */
+    float per_mass[TL_LANES];               /* 1: stiffness and damping are per effective mass */
+    float impulse[TL_LANES];
+    float mass[TL_LANES];
+    float at_lower[TL_LANES];               /* 1: the lower side of the range is the near one */
+} tl_joint_row;
+
+typedef struct tl_joint_group {
+    uint32_t a[TL_LANES], b[TL_LANES], joint[TL_LANES];
+    uint32_t lanes, rows, fixed; /* joints, rows, and how many of the first rows are equalities */
+    uint32_t first_row;          /* in joint_row_pool */
+    uint32_t free_axis;          /* beside two locked angular ones */
+    uint32_t reserved[7];
+    uint32_t code[TL_JOINT_ROWS];
+    float pa[3][TL_LANES], qa[4][TL_LANES]; /* the joint's frame in a's mass frame */
+    float pb[3][TL_LANES], qb[4][TL_LANES];
+    float factor[21][TL_LANES]; /* L D L^T of the equalities' matrix, by rows; D inverted */
+} tl_joint_group;
+
+#endif

@@ -1,0 +1,161 @@
+/* The layout of the block, and what is said of whole blocks: hash, first difference. */
+#include "stage/store/store.h"
+
+#include <string.h>
+
+#include "stage/store/hash.h"
+
+typedef enum life { LIFE_STATE, LIFE_STEP } life;
+
+typedef struct column_info {
+    const char *name;
+    uint32_t row_bytes, word, count, life;
+} column_info;
+
+static const column_info COLUMNS[TL_COLUMN_COUNT] = {
+#define X(name, type, count, stage, life, word) {#name, sizeof(type), word, TL_COUNT_##count, LIFE_##life},
+    TL_COLUMNS(X)
+#undef X
+};
+
+static uint32_t power_of_two_from(uint32_t n) {
+    uint32_t p = 8u;
+    while (p < n) {
+        p *= 2u;
+    }
+    return p;
+}
+
+/* Groups of eight: full ones, one that is not full for each colour, and room for contacts beyond the last colour, which may
+ * have to stand alone. */
+static uint32_t group_capacity(uint32_t contacts) {
+    return contacts / TL_LANES + TL_COLORS + contacts / 16u;
+}
+
+uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_COUNT],
+                         uint32_t offset[TL_COLUMN_COUNT]) {
+    capacity[TL_COUNT_BODY] = def->body_capacity + 1u; /* the ground is body 0 */
+    capacity[TL_COUNT_SHAPE] = def->shape_capacity;
+    capacity[TL_COUNT_NODE] = 2u * def->shape_capacity;
+    capacity[TL_COUNT_CONTACT] = def->contact_capacity;
+    capacity[TL_COUNT_SLOT] = power_of_two_from(2u * def->contact_capacity);
+    capacity[TL_COUNT_JOINT] = def->joint_capacity;
+    capacity[TL_COUNT_ROW] = (def->body_capacity + 1u + TL_LANES) / TL_LANES * TL_LANES + TL_LANES;
+    capacity[TL_COUNT_GROUP] = group_capacity(def->contact_capacity);
+    capacity[TL_COUNT_JOINTGROUP] = def->joint_capacity;
+    capacity[TL_COUNT_JOINTROW] = def->joint_capacity * 6u + TL_JOINT_ROWS;
+    capacity[TL_COUNT_EVENT] = def->event_capacity;
+    uint64_t unit = (sizeof(tl_header) + TL_UNIT - 1u) / TL_UNIT;
+    for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
+        offset[i] = (uint32_t)unit;
+        unit += ((uint64_t)COLUMNS[i].row_bytes * capacity[COLUMNS[i].count] + TL_UNIT - 1u) / TL_UNIT;
+        if (unit > 0xfffffff0u) {
+            return 0;
+        }
+    }
+    return (uint32_t)unit;
+}
+
+uint32_t tl_pool_top(const tl_pool *pool, uint32_t capacity) {
+    if (pool->free != TL_NONE) {
+        return pool->free;
+    }
+    return pool->high < capacity ? pool->high : TL_NONE;
+}
+
+int tl_world_is_sound(const talus_world *world) {
+    if (!world || !world->block || (uintptr_t)world->block % TALUS_BLOCK_ALIGNMENT) {
+        return 0;
+    }
+    const tl_header *h = tl_header_of(world);
+    return h->magic == TL_BLOCK_MAGIC && h->version == TL_BLOCK_VERSION;
+}
+
+uint32_t tl_store_live(const tl_header *h, tl_column_id column) {
+    switch (column) {
+    case TL_COLUMN_awake_body:
+        return h->awake_bodies;
+    case TL_COLUMN_awake_contact:
+        return h->awake_contacts;
+    case TL_COLUMN_awake_joint:
+        return h->awake_joints;
+    case TL_COLUMN_moved_shape:
+        return h->moved_shapes;
+    default:
+        break;
+    }
+    switch (COLUMNS[column].count) {
+    case TL_COUNT_BODY:
+        return h->bodies.high;
+    case TL_COUNT_SHAPE:
+        return h->shapes.high;
+    case TL_COUNT_NODE:
+        return h->nodes.high;
+    case TL_COUNT_CONTACT:
+        return h->contacts.high;
+    case TL_COUNT_SLOT:
+        return h->capacity[TL_COUNT_SLOT];
+    case TL_COUNT_JOINT:
+        return h->joints.high;
+    default:
+        return 0;
+    }
+}
+
+static const unsigned char *column_bytes(const tl_header *h, uint32_t column) {
+    return (const unsigned char *)h + (size_t)h->offset[column] * TL_UNIT;
+}
+
+uint64_t talus_world_hash(const talus_world *world) {
+    if (!tl_world_is_sound(world)) {
+        return 0;
+    }
+    const tl_header *h = tl_header_of(world);
+    tl_hash hash = tl_hash_begin();
+    tl_hash_words(&hash, &h->settings, (size_t)((const unsigned char *)&h->end - (const unsigned char *)&h->settings) / 4u);
+    for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
+        if (COLUMNS[i].life != LIFE_STATE) {
+            continue;
+        }
+        size_t words = (size_t)tl_store_live(h, (tl_column_id)i) * COLUMNS[i].row_bytes / COLUMNS[i].word;
+        if (COLUMNS[i].word == 8u) {
+            tl_hash_long_words(&hash, column_bytes(h, i), words);
+        } else {
+            tl_hash_words(&hash, column_bytes(h, i), words);
+        }
+    }
+    return tl_hash_end(&hash);
+}
+
+int talus_world_first_difference(const talus_world *a, const talus_world *b, talus_difference *out) {
+    if (!tl_world_is_sound(a) || !tl_world_is_sound(b) || !out) {
+        return -1;
+    }
+    const tl_header *ha = tl_header_of(a), *hb = tl_header_of(b);
+    if (memcmp(ha->capacity, hb->capacity, sizeof ha->capacity) != 0) {
+        return -1;
+    }
+    const unsigned char *pa = (const unsigned char *)&ha->settings, *pb = (const unsigned char *)&hb->settings;
+    size_t bytes = (size_t)((const unsigned char *)&ha->end - pa);
+    for (size_t k = 0; k < bytes; k++) {
+        if (pa[k] != pb[k]) {
+            out->column = "header", out->row = 0, out->byte = (uint32_t)k;
+            return 1;
+        }
+    }
+    for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
+        if (COLUMNS[i].life != LIFE_STATE) {
+            continue;
+        }
+        bytes = (size_t)tl_store_live(ha, (tl_column_id)i) * COLUMNS[i].row_bytes;
+        pa = column_bytes(ha, i), pb = column_bytes(hb, i);
+        for (size_t k = 0; memcmp(pa, pb, bytes) != 0 && k < bytes; k++) {
+            if (pa[k] != pb[k]) {
+                out->column = COLUMNS[i].name;
+                out->row = (uint32_t)(k / COLUMNS[i].row_bytes), out->byte = (uint32_t)(k % COLUMNS[i].row_bytes);
+                return 1;
+            }
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,161 @@
+/* The step: one direction, one loop over sub-steps. */
+#include "stage/broad/refit.h"
+#include "stage/island/islands.h"
+#include "stage/stages.h"
+#include "talus/world.h"
+
+/* The share of a joint's error that a sub-step takes back. */
+#define JOINT_SHARE 0.4f
+
+/* A stopwatch on the caller's clock; does nothing without one. */
+typedef struct watch {
+    const talus_clock *clock;
+    talus_profile *profile;
+    uint64_t last;
+} watch;
+
+static void watch_lap(watch *w, talus_stage stage) {
+    if (w->clock) {
+        uint64_t now = w->clock->now(w->clock->context);
+        w->profile->stage[stage] += now - w->last;
+        w->profile->total += now - w->last;
+        w->last = now;
+    }
+}
+
+static void watch_start(watch *w, const talus_clock *clock, talus_profile *profile) {
+    w->clock = clock && clock->now && profile ? clock : NULL;
+    w->profile = profile;
+    w->last = 0;
+    if (profile) {
+        for (int i = 0; i < TALUS_STAGE_COUNT; i++) {
+            profile->stage[i] = 0;
+        }
+        profile->total = 0;
+    }
+    if (w->clock) {
+        w->last = clock->now(clock->context);
+    }
+}
+
+/* A contact in overlap is a damped spring of the set frequency, no stiffer than a quarter of the sub-steps' own. */
+static void set_softness(tl_step *step) {
+    const tl_settings *s = &step->h->settings;
+    float hertz = tl_min(s->contact_hertz, 0.25f * step->inverse_sub);
+    float omega = 6.2831853f * hertz, zeta = s->contact_damping_ratio, h = step->sub;
+    float a1 = 2.0f * zeta + h * omega, a2 = h * omega * a1, a3 = 1.0f / (1.0f + a2);
+    step->bias_rate = omega / a1;
+    step->mass_scale = a2 * a3;
+    step->impulse_scale = a3;
+    step->joint_rate = JOINT_SHARE * step->inverse_sub;
+}
+
+static void begin_step(tl_step *step, const talus_world *world, float dt) {
+    tl_header *h = tl_header_of(world);
+    step->h = h;
+    step->geometry = world->geometry;
+    step->dt = dt;
+    step->sub = dt / (float)h->settings.substeps;
+    step->inverse_sub = 1.0f / step->sub;
+    step->warm_scale = h->settings.substep > 0.0f ? step->sub / h->settings.substep : 1.0f;
+    step->rows = 0;
+    step->any_locks = 0;
+    h->settings.substep = step->sub;
+    set_softness(step);
+    tl_events_begin(h);
+    h->counters.islands_slept = h->counters.islands_woken = 0;
+}
+
+static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w) {
+    tl_header *h = step->h;
+    uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
+    k->velocity(step, 0, step->rows);
+    watch_lap(w, TALUS_STAGE_VELOCITY);
+    if (joints) {
+        k->prepare_joints(step, 0, joints);
+    }
+    if (first) {
+        k->warm_joints(step, 0, joints);
+        k->warm_contacts(step, 0, contacts);
+    }
+    for (uint32_t i = 0; i < passes; i++) {
+        k->solve_joints(step, 0, joints);
+        k->solve_contacts(step, 0, contacts);
+    }
+    if (step->any_locks) {
+        tl_stage_locks(step);
+    }
+    watch_lap(w, TALUS_STAGE_SOLVE);
+    k->position(step, 0, step->rows);
+    watch_lap(w, TALUS_STAGE_POSITION);
+    for (uint32_t i = 0; i < passes; i++) {
+        k->relax_joints(step, 0, joints);
+        k->relax_contacts(step, 0, contacts);
+    }
+    if (step->any_locks) {
+        tl_stage_locks(step);
+    }
+    watch_lap(w, TALUS_STAGE_RELAX);
+}
+
+static void solve(tl_step *step, watch *w) {
+    tl_header *h = step->h;
+    const tl_kernels *k = tl_kernels_of((talus_isa)h->isa);
+    tl_stage_body_rows(step);
+    tl_stage_contact_groups(step);
+    tl_stage_joint_groups(step);
+    k->prepare_contacts(step, 0, h->groups);
+    watch_lap(w, TALUS_STAGE_ROWS);
+    for (uint32_t i = 0; i < h->settings.substeps; i++) {
+        run_substep(step, k, i == 0, w);
+    }
+    uint32_t bouncing = 0;
+    for (uint32_t i = 0; i < h->groups; i++) {
+        bouncing |= tl_group_pool(h)[i].bounces;
+    }
+    if (bouncing) {
+        k->bounce_contacts(step, 0, h->groups);
+    }
+    h->counters.restitution_skipped = !bouncing;
+    watch_lap(w, TALUS_STAGE_RESTITUTION);
+    k->store_contacts(step, 0, h->groups);
+    k->store_joints(step, 0, h->joint_groups);
+}
+
+talus_status talus_world_step(talus_world *world, float dt, const talus_clock *clock, talus_profile *profile) {
+    if (!tl_world_is_sound(world)) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    if (!tl_is_finite(dt)) {
+        return TALUS_NOT_FINITE;
+    }
+    if (!(dt > 0.0f && dt <= 1.0f)) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    watch w;
+    tl_step step;
+    watch_start(&w, clock, profile);
+    begin_step(&step, world, dt);
+    tl_header *h = step.h;
+    watch_lap(&w, TALUS_STAGE_COMMANDS);
+    tl_stage_refit(h, step.geometry, dt);
+    watch_lap(&w, TALUS_STAGE_REFIT);
+    tl_stage_pairs(h);
+    watch_lap(&w, TALUS_STAGE_PAIRS);
+    tl_stage_narrow(&step);
+    watch_lap(&w, TALUS_STAGE_NARROW);
+    solve(&step, &w);
+    tl_stage_commit(&step);
+    watch_lap(&w, TALUS_STAGE_COMMIT);
+    tl_stage_events(&step);
+    watch_lap(&w, TALUS_STAGE_EVENTS);
+    tl_stage_sleep(h, dt);
+    watch_lap(&w, TALUS_STAGE_SLEEP);
+    h->counters.awake_bodies = h->awake_bodies;
+    h->counters.sleeping_bodies = h->bodies.used - 1u - h->awake_bodies;
+    h->counters.joints_skipped = h->joint_groups == 0;
+    if (++h->steps_low == 0) {
+        h->steps_high++;
+    }
+    return TALUS_OK;
+}

@@ -1,0 +1,262 @@
+/* Shapes of bodies: making, ending, materials and filters. */
+#include "talus/shape.h"
+
+#include <string.h>
+
+#include "geom/mass.h"
+#include "stage/broad/refit.h"
+#include "world/world_internal.h"
+
+talus_shape_def talus_shape_def_default(void) {
+    talus_shape_def def;
+    memset(&def, 0, sizeof def);
+    def.geometry.type = TALUS_BOX;
+    def.geometry.half = tl_v(0.5f, 0.5f, 0.5f);
+    def.pose = tl_pose_identity();
+    def.material.static_friction = def.material.dynamic_friction = 0.5f;
+    def.filter.category = 1u;
+    def.filter.mask = ~(uint64_t)0;
+    def.density = 1000.0f;
+    return def;
+}
+
+static talus_status check_material(const talus_material *m) {
+    const float numbers[] = {m->static_friction, m->dynamic_friction, m->restitution, m->rolling_resistance};
+    for (int i = 0; i < 4; i++) {
+        if (!tl_is_finite(numbers[i])) {
+            return TALUS_NOT_FINITE;
+        }
+        if (numbers[i] < 0.0f || numbers[i] > 1e6f) {
+            return TALUS_BAD_ARGUMENT;
+        }
+    }
+    if (m->restitution > 1.0f || (unsigned)m->friction_combine >= TALUS_COMBINE_COUNT ||
+        (unsigned)m->restitution_combine >= TALUS_COMBINE_COUNT) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    return TALUS_OK;
+}
+
+static tl_material stored(const talus_material *m) {
+    tl_material s = {m->static_friction,    m->dynamic_friction,           m->restitution,
+                     m->rolling_resistance, (uint32_t)m->friction_combine, (uint32_t)m->restitution_combine};
+    return s;
+}
+
+static talus_status check_def(const talus_world *world, const talus_shape_def *d) {
+    talus_status status = tl_geometry_check(&d->geometry, world->geometry, world->geometry_bytes);
+    if (status == TALUS_OK) {
+        status = check_material(&d->material);
+    }
+    if (status != TALUS_OK) {
+        return status;
+    }
+    if (!tl_is_finite_pose(&d->pose) || !tl_is_finite(d->density)) {
+        return TALUS_NOT_FINITE;
+    }
+    const talus_quat q = d->pose.rotation;
+    if ((q.x == 0.0f && q.y == 0.0f && q.z == 0.0f && q.w == 0.0f) || d->density < 0.0f) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    return TALUS_OK;
+}
+
+talus_status talus_shape_create(talus_world *world, talus_body body, const talus_shape_def *def, talus_shape *out) {
+    uint32_t b;
+    talus_status status = def && out ? tl_find_body(world, body, &b) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        status = check_def(world, def);
+    }
+    if (status != TALUS_OK) {
+        return status;
+    }
+    tl_header *h = tl_header_of(world);
+    uint32_t i = tl_pool_top(&h->shapes, h->capacity[TL_COUNT_SHAPE]);
+    if (i == TL_NONE) {
+        return TALUS_FULL_SHAPES;
+    }
+    tl_shape_meta *meta = &tl_shapes(h)[i];
+    if (i == h->shapes.free) {
+        h->shapes.free = meta->next;
+    } else {
+        h->shapes.high++;
+    }
+    h->shapes.used++;
+    h->shapes.peak = h->shapes.used > h->shapes.peak ? h->shapes.used : h->shapes.peak;
+    uint32_t generation = meta->generation + 1u;
+    memset(meta, 0, sizeof *meta);
+    meta->generation = generation ? generation : 1u;
+    meta->flags = TL_SHAPE_ALIVE | (def->sensor ? TL_SHAPE_SENSOR : 0u) | (def->events ? TL_SHAPE_EVENTS : 0u);
+    h->event_shapes += (meta->flags & (TL_SHAPE_SENSOR | TL_SHAPE_EVENTS)) != 0;
+    meta->body = b;
+    meta->node = TL_NONE;
+    meta->group = def->filter.group;
+    meta->density = def->density;
+    talus_geometry *geometry = &tl_shape_geometry(h)[i];
+    memset(geometry, 0, sizeof *geometry);
+    *geometry = def->geometry;
+    tl_shape_pose(h)[i] = def->pose;
+    tl_shape_pose(h)[i].rotation = tl_quat_normalize(def->pose.rotation);
+    tl_shape_material(h)[i] = stored(&def->material);
+    tl_shape_category(h)[i] = def->filter.category;
+    tl_shape_mask(h)[i] = def->filter.mask;
+    tl_shape_user(h)[i] = def->user_data;
+    memset(&tl_shape_fat(h)[i], 0, sizeof(tl_row8));
+    tl_island_wake(h, b);
+    meta->next = tl_bodies(h)[b].first_shape;
+    tl_bodies(h)[b].first_shape = i;
+    tl_body_update_mass(world, b); /* places the shape and enters it in the list of what moved */
+    out->index = i, out->generation = meta->generation;
+    return TALUS_OK;
+}
+
+void tl_shape_remove(tl_header *h, uint32_t i) {
+    tl_shape_meta *meta = &tl_shapes(h)[i];
+    uint32_t body = meta->body;
+    const tl_contact_link *links = tl_contact_links(h);
+    for (uint32_t l = tl_bodies(h)[body].first_contact; l != TL_NONE;) {
+        uint32_t c = l >> 1, next = links[c].next[l & 1u];
+        if (links[c].shape_a == i || links[c].shape_b == i) {
+            uint32_t other = tl_contacts(h)[c].body_a == body ? tl_contacts(h)[c].body_b : tl_contacts(h)[c].body_a;
+            if (tl_contacts(h)[c].flags & TL_CONTACT_TOUCHING) {
+                tl_island_wake(h, other);
+            }
+            tl_contact_end(h, c);
+        }
+        l = next;
+    }
+    uint32_t *at = &tl_bodies(h)[body].first_shape;
+    while (*at != i) {
+        at = &tl_shapes(h)[*at].next;
+    }
+    *at = meta->next;
+    if (meta->node != TL_NONE) {
+        tl_tree_remove(h, tl_body_type(&tl_bodies(h)[body]) == TALUS_STATIC ? TL_TREE_STILL : TL_TREE_MOVING, meta->node);
+    }
+    tl_shape_unmark_moved(h, i);
+    h->event_shapes -= (meta->flags & (TL_SHAPE_SENSOR | TL_SHAPE_EVENTS)) != 0;
+    uint32_t generation = meta->generation;
+    memset(meta, 0, sizeof *meta);
+    meta->generation = generation;
+    meta->node = TL_NONE;
+    meta->next = h->shapes.free;
+    h->shapes.free = i;
+    h->shapes.used--;
+}
+
+talus_status talus_shape_destroy(talus_world *world, talus_shape shape) {
+    uint32_t i;
+    talus_status status = tl_find_shape(world, shape, &i);
+    if (status == TALUS_OK) {
+        tl_header *h = tl_header_of(world);
+        uint32_t body = tl_shapes(h)[i].body;
+        tl_island_wake(h, body);
+        tl_shape_remove(h, i);
+        tl_body_update_mass(world, body);
+    }
+    return status;
+}
+
+int talus_shape_is_valid(const talus_world *world, talus_shape shape) {
+    uint32_t i;
+    return tl_find_shape(world, shape, &i) == TALUS_OK;
+}
+
+talus_status talus_shape_get_body(const talus_world *world, talus_shape shape, talus_body *out) {
+    uint32_t i;
+    talus_status status = out ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        const tl_header *h = tl_header_of(world);
+        out->index = tl_shapes(h)[i].body;
+        out->generation = tl_bodies(h)[out->index].generation;
+    }
+    return status;
+}
+
+talus_status talus_shape_get_user_data(const talus_world *world, talus_shape shape, uint64_t *out) {
+    uint32_t i;
+    talus_status status = out ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        *out = tl_shape_user(tl_header_of(world))[i];
+    }
+    return status;
+}
+
+talus_status talus_shape_get_material(const talus_world *world, talus_shape shape, talus_material *out) {
+    uint32_t i;
+    talus_status status = out ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        const tl_material *m = &tl_shape_material(tl_header_of(world))[i];
+        out->static_friction = m->static_friction, out->dynamic_friction = m->dynamic_friction;
+        out->restitution = m->restitution, out->rolling_resistance = m->rolling_resistance;
+        out->friction_combine = (talus_combine)m->friction_combine;
+        out->restitution_combine = (talus_combine)m->restitution_combine;
+    }
+    return status;
+}
+
+talus_status talus_shape_set_material(talus_world *world, talus_shape shape, const talus_material *material) {
+    uint32_t i;
+    talus_status status = material ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        status = check_material(material);
+    }
+    if (status != TALUS_OK) {
+        return status;
+    }
+    tl_header *h = tl_header_of(world);
+    tl_shape_material(h)[i] = stored(material);
+    uint32_t body = tl_shapes(h)[i].body;
+    tl_island_wake(h, body);
+    const tl_contact_link *links = tl_contact_links(h);
+    for (uint32_t l = tl_bodies(h)[body].first_contact; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
+        tl_contact_mix(h, l >> 1);
+    }
+    return TALUS_OK;
+}
+
+talus_status talus_shape_get_filter(const talus_world *world, talus_shape shape, talus_filter *out) {
+    uint32_t i;
+    talus_status status = out ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        const tl_header *h = tl_header_of(world);
+        out->category = tl_shape_category(h)[i];
+        out->mask = tl_shape_mask(h)[i];
+        out->group = tl_shapes(h)[i].group;
+    }
+    return status;
+}
+
+talus_status talus_shape_set_filter(talus_world *world, talus_shape shape, const talus_filter *filter) {
+    uint32_t i;
+    talus_status status = filter ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
+    if (status != TALUS_OK) {
+        return status;
+    }
+    tl_header *h = tl_header_of(world);
+    tl_shape_category(h)[i] = filter->category;
+    tl_shape_mask(h)[i] = filter->mask;
+    tl_shapes(h)[i].group = filter->group;
+    uint32_t body = tl_shapes(h)[i].body;
+    tl_island_wake(h, body);
+    const tl_contact_link *links = tl_contact_links(h);
+    for (uint32_t l = tl_bodies(h)[body].first_contact; l != TL_NONE;) {
+        uint32_t c = l >> 1, next = links[c].next[l & 1u];
+        if (links[c].shape_a == i || links[c].shape_b == i) {
+            tl_island_wake(h, tl_contacts(h)[c].body_a == body ? tl_contacts(h)[c].body_b : tl_contacts(h)[c].body_a);
+            tl_contact_end(h, c);
+        }
+        l = next;
+    }
+    tl_shape_mark_moved(h, i);
+    return TALUS_OK;
+}
+
+talus_status talus_shape_get_aabb(const talus_world *world, talus_shape shape, talus_aabb *out) {
+    uint32_t i;
+    talus_status status = out ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        *out = tl_shape_box(tl_header_of(world), world->geometry, i);
+    }
+    return status;
+}

@@ -1,0 +1,28 @@
+/* What the files of the API share: looking handles up, and the lists that tie bodies, contacts and joints together. */
+#ifndef TL_WORLD_INTERNAL_H
+#define TL_WORLD_INTERNAL_H
+
+#include "stage/broad/tree.h"
+#include "stage/store/lists.h"
+#include "stage/store/store.h"
+
+/* The index behind a handle. TALUS_BAD_ARGUMENT for an unsound world, TALUS_STALE_HANDLE. */
+talus_status tl_find_body(const talus_world *world, talus_body body, uint32_t *index);
+talus_status tl_find_shape(const talus_world *world, talus_shape shape, uint32_t *index);
+talus_status tl_find_joint(const talus_world *world, talus_joint joint, uint32_t *index);
+
+/* The pose of the body's origin. */
+talus_pose tl_body_origin(const tl_header *h, uint32_t body);
+
+/* Works out the body's mass from its shapes unless the caller set it, and all that follows from the mass frame. */
+void tl_body_update_mass(talus_world *world, uint32_t body);
+/* Takes the mass in the body's frame as it is. */
+void tl_body_take_mass(talus_world *world, uint32_t body, const talus_mass *mass);
+
+/* Removes a shape from trees, lists and pairs, without touching the body's mass. */
+void tl_shape_remove(tl_header *h, uint32_t shape);
+
+/* Where the joint's frames stand in the bodies' mass frames. */
+void tl_joint_place(const tl_header *h, tl_joint_record *joint);
+
+#endif
