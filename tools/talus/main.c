@@ -1,0 +1,55 @@
+/* talus: runs physics scenes without a window. */
+#include "tool.h"
+
+#include "talus/version.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+int tool_fail(int status, const char *format, ...) {
+    va_list arguments;
+    fputs("talus: ", stderr);
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fputc('\n', stderr);
+    return status;
+}
+
+static int help(int count, char **arguments) {
+    const char *subcommand = count > 1 ? arguments[1] : NULL;
+    if (!tool_print_manual(subcommand)) {
+        return tool_fail(TOOL_USAGE, "there is no help on \"%s\"; try: talus help", subcommand);
+    }
+    return 0;
+}
+
+static int version(int count, char **arguments) {
+    (void)count;
+    (void)arguments;
+    printf("talus %s\n", TALUS_VERSION);
+    return 0;
+}
+
+int main(int count, char **arguments) {
+    static const struct {
+        const char *name;
+        int (*run)(int count, char **arguments);
+    } commands[] = {{"run", tool_run}, {"scene", tool_scene}, {"help", help},         {"--help", help},
+                    {"-h", help},      {"version", version},  {"--version", version}, {"-V", version}};
+    if (count < 2) {
+        tool_print_manual(NULL);
+        return TOOL_USAGE;
+    }
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+        if (strcmp(arguments[1], commands[i].name) == 0) {
+            int status = commands[i].run(count - 1, arguments + 1);
+            if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0) {
+                status = tool_fail(GLTF_FAILED, "the standard output could not be written");
+            }
+            return status;
+        }
+    }
+    return tool_fail(TOOL_USAGE, "there is no subcommand \"%s\"; try: talus help", arguments[1]);
+}

@@ -1,0 +1,409 @@
+#define _POSIX_C_SOURCE 200809L
+#include "run.h"
+
+#include "gltf/animate.h"
+#include "host/clock.h"
+#include "host/file.h"
+#include "scenes.h"
+#include "tool.h"
+#include "trajectory.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define FRAMES_PER_SECOND 30.0 /* of an animation */
+#define MAX_STEPS 10000000u
+
+/* --- options --- */
+
+/* A whole number in [low, high] out of an option; an error otherwise. */
+static int whole(const char *option, const char *text, uint64_t low, uint64_t high, uint64_t *out) {
+    char *end = NULL;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    if (errno != 0 || end == text || *end != 0 || text[0] == '-' || value < low || value > high) {
+        tool_fail(TOOL_USAGE, "%s: \"%s\" is not a whole number from %llu to %llu", option, text,
+                  (unsigned long long)low, (unsigned long long)high);
+        return 0;
+    }
+    *out = value;
+    return 1;
+}
+
+static int seconds(const char *option, const char *text, double *out) {
+    char *end = NULL;
+    *out = strtod(text, &end);
+    if (end == text || *end != 0 || !(*out >= 1e-6 && *out <= 1)) {
+        tool_fail(TOOL_USAGE, "%s: \"%s\" is not a number of seconds from 1e-6 to 1", option, text);
+        return 0;
+    }
+    return 1;
+}
+
+static int instruction_set(const char *text, talus_isa *out) {
+    char names[160] = "";
+    for (int i = 0; i < TALUS_ISA_COUNT; i++) {
+        const char *name = talus_isa_name((talus_isa)i);
+        if (strcmp(text, name) == 0) {
+            *out = (talus_isa)i;
+            if (i == TALUS_ISA_BEST || talus_isa_available(*out)) {
+                return 0;
+            }
+            return tool_fail(GLTF_UNSUPPORTED, "--isa: \"%s\" is not in this build or on this processor", text);
+        }
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i == 0 ? "" : ", ", name);
+    }
+    return tool_fail(TOOL_USAGE, "--isa: \"%s\" is none of %s", text, names);
+}
+
+enum { OUT = 1, STEPS, DT, SUBSTEPS, ITERATIONS, ISA, THREADS, NO_SLEEP, JSON, PROFILE, ANIMATE, QUIET, HELP };
+
+static const struct option long_options[] = {{"out", required_argument, NULL, OUT},
+                                             {"steps", required_argument, NULL, STEPS},
+                                             {"dt", required_argument, NULL, DT},
+                                             {"substeps", required_argument, NULL, SUBSTEPS},
+                                             {"isa", required_argument, NULL, ISA},
+                                             {"iterations", required_argument, NULL, ITERATIONS},
+                                             {"threads", required_argument, NULL, THREADS},
+                                             {"no-sleep", no_argument, NULL, NO_SLEEP},
+                                             {"json", no_argument, NULL, JSON},
+                                             {"profile", no_argument, NULL, PROFILE},
+                                             {"quiet", no_argument, NULL, QUIET},
+                                             {"animate", required_argument, NULL, ANIMATE},
+                                             {"help", no_argument, NULL, HELP},
+                                             {NULL, 0, NULL, 0}};
+
+/* Reads one option; an exit status, or 0. */
+static int take_option(int option, run_options *out) {
+    uint64_t number = 0;
+    switch (option) {
+    case OUT:
+        out->out = optarg;
+        return 0;
+    case ANIMATE:
+        out->animate = optarg;
+        return 0;
+    case STEPS:
+        return whole("--steps", optarg, 0, MAX_STEPS, &out->steps) ? 0 : TOOL_USAGE;
+    case DT:
+        return seconds("--dt", optarg, &out->dt) ? 0 : TOOL_USAGE;
+    case SUBSTEPS:
+        if (!whole("--substeps", optarg, 1, TALUS_MAX_SUBSTEPS, &number)) {
+            return TOOL_USAGE;
+        }
+        out->build.substeps = (uint32_t)number;
+        return 0;
+    case ITERATIONS:
+        if (!whole("--iterations", optarg, 1, TALUS_MAX_ITERATIONS, &number)) {
+            return TOOL_USAGE;
+        }
+        out->build.iterations = (uint32_t)number;
+        return 0;
+    case THREADS:
+        if (!whole("--threads", optarg, 1, 1024, &number)) {
+            return TOOL_USAGE;
+        }
+        return number == 1 ? 0 : tool_fail(GLTF_UNSUPPORTED, "--threads: a step runs on one thread");
+    case ISA:
+        return instruction_set(optarg, &out->build.isa);
+    case NO_SLEEP:
+        out->build.no_sleep = 1;
+        return 0;
+    case JSON:
+        out->json = 1;
+        return 0;
+    case PROFILE:
+        out->profile = 1;
+        return 0;
+    case QUIET:
+        out->quiet = 1;
+        return 0;
+    default:
+        return tool_fail(TOOL_USAGE, "see: talus help run");
+    }
+}
+
+/* --- loading --- */
+
+static int load(const run_options *options, gltf_scene *scene) {
+    gltf_error error;
+    if (options->scene[0] != '@') {
+        gltf_scene_load_file(scene, options->scene, &error);
+    } else {
+        size_t size = 0;
+        int known = 0;
+        char *text = scenes_make(options->scene + 1, &size, &known);
+        if (text == NULL) {
+            return known ? tool_fail(GLTF_FAILED, "there is no memory for the scene")
+                         : tool_fail(TOOL_USAGE, "there is no scene \"%s\"; try: talus scene --list", options->scene);
+        }
+        gltf_scene_load(scene, text, size, NULL, &error);
+        free(text);
+    }
+    return error.status == GLTF_OK ? 0 : tool_fail((int)error.status, "%s: %s", options->scene, error.text);
+}
+
+/* The file's name without its folder and ending. */
+static void name_scene(const char *path, char *out, size_t size) {
+    const char *slash = strrchr(path, '/');
+    snprintf(out, size, "%s", slash != NULL ? slash + 1 : path[0] == '@' ? path + 1 : path);
+    char *dot = strrchr(out, '.');
+    if (dot != NULL && dot != out) {
+        *dot = 0;
+    }
+}
+
+/* --- running --- */
+
+/* What the steps of a run share. */
+typedef struct runner {
+    const run_options *options;
+    const gltf_scene *scene;
+    gltf_world *world;
+    run_result *result;
+    trajectory file;
+    gltf_animation animation;
+    trajectory_state *states;
+    talus_pose *poses;
+    uint32_t frame_every; /* steps between two frames of the animation */
+} runner;
+
+static int is_finite_state(const trajectory_state *s) {
+    const float sum = (s->pose.position.x + s->pose.position.y + s->pose.position.z) * 0.0f +
+                      (s->pose.rotation.x + s->pose.rotation.y + s->pose.rotation.z + s->pose.rotation.w) * 0.0f +
+                      (s->linear.x + s->linear.y + s->linear.z) * 0.0f +
+                      (s->angular.x + s->angular.y + s->angular.z) * 0.0f;
+    return sum == 0.0f; /* a NaN or an infinity times 0 is a NaN */
+}
+
+static void take_states(runner *r, uint32_t step, double ms) {
+    int finite = 1;
+    for (uint32_t i = 0; i < r->scene->body_count; i++) {
+        trajectory_state *s = &r->states[i];
+        talus_body_get_pose(&r->world->world, r->world->bodies[i], &s->pose);
+        talus_body_get_velocity(&r->world->world, r->world->bodies[i], &s->linear, &s->angular);
+        r->poses[i] = s->pose;
+        finite &= is_finite_state(s);
+    }
+    if (!finite && r->result->not_finite_step == 0) {
+        r->result->not_finite_step = step > 0 ? step : 1;
+    }
+    trajectory_frame(&r->file, (float)ms, r->states);
+    if (r->options->animate != NULL && (step % r->frame_every == 0 || step == r->result->steps)) {
+        gltf_animation_frame(&r->animation, step * (double)r->result->dt, r->poses);
+    }
+}
+
+static void take_counters(run_result *out, const talus_world *world) {
+    talus_counters c;
+    memset(&c, 0, sizeof c);
+    talus_world_get_counters(world, &c);
+    out->last = c;
+    out->dropped_contacts += c.contacts.dropped;
+    out->dropped_events += c.events.dropped;
+    out->dropped_rows += c.rows.dropped;
+    out->manifolds_made += c.manifolds_made;
+    out->manifolds_kept += c.manifolds_kept;
+    out->contacts_sleeping += c.contacts_sleeping;
+    out->pairs_made += c.pairs_made;
+    out->proxies_refit += c.proxies_refit;
+    out->body_steps += (uint64_t)c.awake_bodies + c.sleeping_bodies;
+    out->sleeping_body_steps += c.sleeping_bodies;
+    out->steps_without_restitution += c.restitution_skipped != 0;
+    talus_events events;
+    if (talus_world_get_events(world, &events) == TALUS_OK) {
+        out->sensor_begins += events.sensor_begin_count;
+        out->sensor_ends += events.sensor_end_count;
+    }
+}
+
+static uint64_t stage_clock(void *context) {
+    (void)context;
+    return host_clock_ns();
+}
+
+/* A bar on the terminal, once a run has taken a second. */
+static void show_progress(const run_options *options, uint32_t step, uint32_t steps, uint64_t begin, uint64_t *shown) {
+    uint64_t now = host_clock_ns();
+    if (options->quiet || options->json || now - begin < 1000000000u || now - *shown < 100000000u) {
+        return;
+    }
+    if (!isatty(STDERR_FILENO)) {
+        return;
+    }
+    *shown = now;
+    char bar[41];
+    int full = (int)(40.0 * step / steps);
+    memset(bar, '.', 40);
+    memset(bar, '#', (size_t)full);
+    bar[40] = 0;
+    double left = (double)(now - begin) * 1e-9 * (steps - step) / (step > 0 ? step : 1);
+    fprintf(stderr, "\r[%s] step %lu of %lu, %.0f s left   ", bar, (unsigned long)step, (unsigned long)steps, left);
+    fflush(stderr);
+}
+
+static int run_steps(runner *r) {
+    run_result *out = r->result;
+    const talus_clock clock = {stage_clock, NULL};
+    int timed = r->options->profile || (!r->options->json && !r->options->quiet);
+    uint64_t begin = host_clock_ns(), shown = 0;
+    out->has_stages = timed;
+    take_states(r, 0, 0);
+    for (uint32_t step = 1; step <= out->steps; step++) {
+        talus_profile profile;
+        uint64_t start = host_clock_ns();
+        talus_status status =
+            talus_world_step(&r->world->world, out->dt, timed ? &clock : NULL, timed ? &profile : NULL);
+        uint64_t end = host_clock_ns();
+        if (status != TALUS_OK) {
+            return tool_fail(GLTF_FAILED, "%s: step %lu: %s", r->options->scene, (unsigned long)step,
+                             talus_status_text(status));
+        }
+        out->step_ms[step - 1] = (double)(end - start) * 1e-6;
+        for (int i = 0; timed && i < TALUS_STAGE_COUNT; i++) {
+            out->stage_ns[i] += profile.stage[i];
+        }
+        take_states(r, step, out->step_ms[step - 1]);
+        take_counters(out, &r->world->world);
+        show_progress(r->options, step, out->steps, begin, &shown);
+    }
+    if (shown != 0) {
+        fprintf(stderr, "\r%79s\r", "");
+    }
+    return 0;
+}
+
+static int compare_numbers(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double part(const run_result *r, double share) {
+    uint32_t i = (uint32_t)(r->steps * share);
+    return r->steps == 0 ? 0 : r->step_ms[i < r->steps ? i : r->steps - 1];
+}
+
+static void sum_up(run_result *out) {
+    double sum = 0;
+    for (uint32_t i = 0; i < out->steps; i++) {
+        sum += out->step_ms[i];
+    }
+    qsort(out->step_ms, out->steps, sizeof *out->step_ms, compare_numbers);
+    out->mean = out->steps > 0 ? sum / out->steps : 0;
+    out->p50 = part(out, 0.5);
+    out->p99 = part(out, 0.99);
+    out->p999 = part(out, 0.999);
+    out->max = part(out, 1);
+}
+
+static int write_animation(const runner *r) {
+    gltf_text bytes = {NULL, 0, 0, 0};
+    gltf_error error;
+    int status = (int)gltf_animation_encode(&r->animation, r->world, &bytes, &error);
+    if (status != 0) {
+        tool_fail(status, "%s: %s", r->options->animate, error.text);
+    } else if (host_file_write(r->options->animate, bytes.data, bytes.size) != HOST_FILE_OK) {
+        status = tool_fail(GLTF_FAILED, "%s: %s", r->options->animate, strerror(errno));
+    }
+    gltf_text_free(&bytes);
+    return status;
+}
+
+/* Steps the world and writes what was asked for. */
+static int run_world(const run_options *options, const gltf_scene *scene, gltf_world *world, run_result *result) {
+    runner r;
+    memset(&r, 0, sizeof r);
+    r.options = options;
+    r.scene = scene;
+    r.world = world;
+    r.result = result;
+    r.frame_every = (uint32_t)fmax(1, floor(1 / (FRAMES_PER_SECOND * (double)result->dt) + 0.5));
+    r.states = calloc((size_t)scene->body_count + 1, sizeof *r.states);
+    r.poses = calloc((size_t)scene->body_count + 1, sizeof *r.poses);
+    result->step_ms = calloc((size_t)result->steps + 1, sizeof *result->step_ms);
+    gltf_animation_open(&r.animation, scene);
+    int status = 0;
+    if (r.states == NULL || r.poses == NULL || result->step_ms == NULL) {
+        status = tool_fail(GLTF_FAILED, "there is no memory for %lu steps", (unsigned long)result->steps);
+    } else if (!trajectory_open(&r.file, options->out, scene->body_count, result->steps + 1, result->dt)) {
+        status = tool_fail(GLTF_FAILED, "%s: %s", options->out != NULL ? options->out : "", strerror(errno));
+    } else {
+        status = run_steps(&r);
+        result->state_hash = trajectory_hash(&r.file);
+        result->world_hash = talus_world_hash(&world->world);
+        if (!trajectory_close(&r.file) && status == 0) {
+            status = tool_fail(GLTF_FAILED, "%s: %s", options->out, strerror(errno));
+        }
+        if (status == 0 && options->animate != NULL) {
+            status = write_animation(&r);
+        }
+    }
+    gltf_animation_free(&r.animation);
+    free(r.states);
+    free(r.poses);
+    return status;
+}
+
+static int run_scene(const run_options *options, const gltf_scene *scene) {
+    gltf_world world;
+    gltf_error error;
+    run_result result;
+    memset(&result, 0, sizeof result);
+    if (gltf_build(scene, &options->build, &world, &error) != GLTF_OK) {
+        return tool_fail((int)error.status, "%s: %s", options->scene, error.text);
+    }
+    talus_world_def def;
+    memset(&def, 0, sizeof def);
+    talus_world_get_def(&world.world, &def);
+    name_scene(options->scene, result.name, sizeof result.name);
+    result.dt = options->dt > 0 ? (float)options->dt : scene->dt;
+    result.steps = options->steps == UINT64_MAX ? scene->steps : (uint32_t)options->steps;
+    result.substeps = def.substeps;
+    result.iterations = def.iterations;
+    result.isa = (uint32_t)talus_world_get_isa(&world.world);
+    int status = run_world(options, scene, &world, &result);
+    if (status == 0) {
+        sum_up(&result);
+        if (options->json) {
+            report_json(options, scene, &world, &result);
+        } else if (!options->quiet) {
+            report_for_people(options, scene, &world, &result);
+        }
+    }
+    free(result.step_ms);
+    gltf_world_free(&world);
+    return status;
+}
+
+int tool_run(int count, char **arguments) {
+    run_options options;
+    memset(&options, 0, sizeof options);
+    options.steps = UINT64_MAX;
+    options.build.isa = TALUS_ISA_BEST;
+    for (int option; (option = getopt_long(count, arguments, "", long_options, NULL)) != -1;) {
+        int status = option == HELP ? 0 : take_option(option, &options);
+        if (option == HELP) {
+            tool_print_manual("run");
+        }
+        if (option == HELP || status != 0) {
+            return status;
+        }
+    }
+    if (optind + 1 != count) {
+        return tool_fail(TOOL_USAGE, "run: %s; see: talus help run",
+                         optind < count ? "one scene at a time" : "the name of a scene is missing");
+    }
+    options.scene = arguments[optind];
+    gltf_scene scene;
+    int status = load(&options, &scene);
+    if (status == 0) {
+        status = run_scene(&options, &scene);
+        gltf_scene_free(&scene);
+    }
+    return status;
+}

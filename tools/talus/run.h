@@ -1,0 +1,41 @@
+/* One run of a scene: what was asked for, and what came out. */
+#ifndef TALUS_TOOL_RUN_H
+#define TALUS_TOOL_RUN_H
+
+#include "gltf/build.h"
+#include "gltf/scene.h"
+
+typedef struct run_options {
+    const char *scene; /* a path, or '@' and the name of an own scene */
+    const char *out, *animate;
+    gltf_build_options build;
+    double dt;      /* s; 0: the scene's */
+    uint64_t steps; /* UINT64_MAX: the scene's */
+    int json, profile, quiet;
+} run_options;
+
+/* Times are ms. */
+typedef struct run_result {
+    char name[256]; /* the scene's file without its ending */
+    float dt;
+    uint32_t steps;
+    double *step_ms; /* of each step; sorted once it is summed up */
+    double mean, p50, p99, p999, max;
+    int has_stages;
+    uint64_t stage_ns[TALUS_STAGE_COUNT];
+    uint64_t state_hash, world_hash;
+    talus_counters last; /* after the last step */
+    uint64_t dropped_contacts, dropped_events, dropped_rows;
+    uint64_t manifolds_made, manifolds_kept, contacts_sleeping, pairs_made, proxies_refit;
+    uint64_t body_steps, sleeping_body_steps, steps_without_restitution;
+    uint64_t sensor_begins, sensor_ends;
+    uint32_t not_finite_step; /* the first one with a NaN or infinity in its states; 0: none */
+    uint32_t substeps, iterations, isa;
+} run_result;
+
+void report_for_people(const run_options *options, const gltf_scene *scene, const gltf_world *world,
+                       const run_result *result);
+void report_json(const run_options *options, const gltf_scene *scene, const gltf_world *world,
+                 const run_result *result);
+
+#endif

@@ -1,0 +1,20 @@
+/* What the parts of the tool share. */
+#ifndef TALUS_TOOL_TOOL_H
+#define TALUS_TOOL_TOOL_H
+
+#include "gltf/error.h"
+
+/* Besides those of gltf_status. */
+#define TOOL_USAGE 2
+
+/* "talus: " and a line on the standard error; returns `status`. */
+int tool_fail(int status, const char *format, ...) GLTF_PRINTF(2, 3);
+
+/* Subcommands: their arguments without the tool's name, the subcommand's name first. */
+int tool_run(int count, char **arguments);
+int tool_scene(int count, char **arguments);
+
+/* The manual page of a subcommand, or of the tool if it is null; 0 if there is none. */
+int tool_print_manual(const char *subcommand);
+
+#endif
