@@ -10,6 +10,7 @@
 #include "stage/motion/motion.inl"
 
 const tl_kernels TL_KERNELS = {
-    velocity,       position,     prepare_contacts, warm_contacts, solve_contacts, relax_contacts, bounce_contacts,
-    store_contacts, prepare_joints, warm_joints,    solve_joints,  relax_joints,   store_joints,
+    velocity,       position,        push,           prepare_contacts, warm_contacts,
+    solve_contacts, push_contacts,   bounce_contacts, store_contacts,  prepare_joints,
+    warm_joints,    solve_joints,    relax_joints,   store_joints,
 };

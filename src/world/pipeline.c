@@ -38,18 +38,6 @@ static void watch_start(watch *w, const talus_clock *clock, talus_profile *profi
     }
 }
 
-/* A contact in overlap is a damped spring of the set frequency, no stiffer than a quarter of the sub-steps' own. */
-static void set_softness(tl_step *step) {
-    const tl_settings *s = &step->h->settings;
-    float hertz = tl_min(s->contact_hertz, 0.25f * step->inverse_sub);
-    float omega = 6.2831853f * hertz, zeta = s->contact_damping_ratio, h = step->sub;
-    float a1 = 2.0f * zeta + h * omega, a2 = h * omega * a1, a3 = 1.0f / (1.0f + a2);
-    step->bias_rate = omega / a1;
-    step->mass_scale = a2 * a3;
-    step->impulse_scale = a3;
-    step->joint_rate = JOINT_SHARE * step->inverse_sub;
-}
-
 static void begin_step(tl_step *step, const talus_world *world, float dt) {
     tl_header *h = tl_header_of(world);
     step->h = h;
@@ -61,7 +49,7 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->rows = 0;
     step->any_locks = 0;
     h->settings.substep = step->sub;
-    set_softness(step);
+    step->joint_rate = JOINT_SHARE * step->inverse_sub;
     tl_events_begin(h);
     h->counters.islands_slept = h->counters.islands_woken = 0;
 }
@@ -88,9 +76,13 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     watch_lap(w, TALUS_STAGE_SOLVE);
     k->position(step, 0, step->rows);
     watch_lap(w, TALUS_STAGE_POSITION);
+    if (contacts) {
+        k->push_contacts(step, 0, contacts);
+        k->push(step, 0, step->rows);
+    }
     for (uint32_t i = 0; i < passes; i++) {
         k->relax_joints(step, 0, joints);
-        k->relax_contacts(step, 0, contacts);
+        k->solve_contacts(step, 0, contacts);
     }
     if (step->any_locks) {
         tl_stage_locks(step);

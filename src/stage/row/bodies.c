@@ -10,6 +10,7 @@ static void rest_row(tl_header *h, uint32_t row) {
     memset(&tl_row_before(h)[row], 0, sizeof(tl_row8));
     memset(&tl_row_moved(h)[row], 0, sizeof(tl_row8));
     memset(&tl_row_pose(h)[row], 0, sizeof(tl_row8));
+    memset(&tl_row_push(h)[row], 0, sizeof(tl_row8));
     memset(&tl_row_frame(h)[row], 0, sizeof(tl_row8));
     memset(&tl_row_force(h)[row], 0, sizeof(tl_row8));
     tl_row_pose(h)[row].f[6] = 1.0f;
@@ -78,6 +79,8 @@ static void fill_row(tl_step *step, uint32_t body, uint32_t row) {
         rv->f[6] = 0.0f;
     }
     tl_row_before(h)[row] = *rv;
+    memset(&tl_row_push(h)[row], 0, sizeof(tl_row8));
+    tl_row_push(h)[row].f[6] = rv->f[6], tl_row_push(h)[row].f[7] = rv->f[7];
     memset(&tl_row_moved(h)[row], 0, sizeof(tl_row8));
     tl_row_moved(h)[row].f[6] = dynamic ? (float)locks : 0.0f;
     rf->f[0] = frame.x, rf->f[1] = frame.y, rf->f[2] = frame.z, rf->f[3] = frame.w;

@@ -1,16 +1,18 @@
 /* Contacts solved eight manifolds at a time by projected Gauss-Seidel on impulses: Coulomb's cone at the manifold's centre,
  * friction about the normal, rolling resistance, then the normal impulses point by point.
  *
- * The sub-stepped soft constraint follows Catto, "Soft constraints" (GDC 2011) and "Solver2D" (2024): the pass with bias takes
- * overlap back as a damped spring, the pass without takes the speed of that out again. */
+ * Velocities and overlap are kept apart. The velocity pass only stops what would meet within the sub-step; the push takes a
+ * share of what overlap is left back as displacements that leave no speed behind (the split of Guendelman, Bridson and
+ * Fedkiw, "Nonconvex rigid bodies with stacking", SIGGRAPH 2003, and the nonlinear Gauss-Seidel of Catto, GDC 2014). A
+ * load then rests on converged impulses and not on a spring, so that a stack does not sink under its own weight. */
 
+/* The velocities of eight pairs of bodies, or their displacements. */
 typedef struct pair_velocity {
     v8 va, ua, vb, ub;
     tl_f8 ma, ta, mb, tb;
 } pair_velocity;
 
-static inline void load_pair(const tl_step *step, const uint32_t *a, const uint32_t *b, pair_velocity *p) {
-    const float *velocities = tl_row_velocity(step->h)->f;
+static inline void load_pair(const float *velocities, const uint32_t *a, const uint32_t *b, pair_velocity *p) {
     tl_f8 r[8];
     tl_f8_load_rows(velocities, a, r);
     p->va = v8_of(r[0], r[1], r[2]), p->ua = v8_of(r[3], r[4], r[5]), p->ma = r[6], p->ta = r[7];
@@ -18,8 +20,7 @@ static inline void load_pair(const tl_step *step, const uint32_t *a, const uint3
     p->vb = v8_of(r[0], r[1], r[2]), p->ub = v8_of(r[3], r[4], r[5]), p->mb = r[6], p->tb = r[7];
 }
 
-static inline void store_pair(const tl_step *step, const uint32_t *a, const uint32_t *b, const pair_velocity *p) {
-    float *velocities = tl_row_velocity(step->h)->f;
+static inline void store_pair(float *velocities, const uint32_t *a, const uint32_t *b, const pair_velocity *p) {
     const tl_f8 ra[8] = {p->va.x, p->va.y, p->va.z, p->ua.x, p->ua.y, p->ua.z, p->ma, p->ta};
     const tl_f8 rb[8] = {p->vb.x, p->vb.y, p->vb.z, p->ub.x, p->ub.y, p->ub.z, p->mb, p->tb};
     tl_f8_store_rows(velocities, a, ra);
@@ -103,11 +104,11 @@ static void solve_rolling(const tl_step *step, tl_contact_group *g, pair_velocit
     apply_spin(p, ja2, jb2, tl_f8_sub(new2, old2));
 }
 
-static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int with_bias) {
+static inline void solve_contact_group(const tl_step *step, tl_contact_group *g) {
     pair_velocity p;
-    tl_f8 r[8], zero = tl_f8_zero(), one = tl_f8_set1(1.0f);
+    tl_f8 r[8], zero = tl_f8_zero(), inverse_h = tl_f8_set1(step->inverse_sub);
     const float *moves = tl_row_moved(step->h)->f;
-    load_pair(step, g->a, g->b, &p);
+    load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     v8 n = v8_load(g->normal[0]);
     tl_f8 pressure = zero;
     for (uint32_t i = 0; i < g->points; i++) {
@@ -123,24 +124,13 @@ static inline void solve_contact_group(const tl_step *step, tl_contact_group *g,
     tl_f8_load_rows(moves, g->b, r);
     v8 db = v8_of(r[3], r[4], r[5]);
     tl_f8 way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
-    tl_f8 inverse_h = tl_f8_set1(step->inverse_sub), rate = tl_f8_set1(step->bias_rate);
-    tl_f8 push = tl_f8_set1(-step->h->settings.push_speed);
-    tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
     for (uint32_t i = 0; i < g->points; i++) {
         tl_contact_lane_point *c = &g->point[i];
         v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
         tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
-        tl_m8 apart = tl_f8_gt(gap, zero);
-        tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h));
-        tl_f8 old = tl_f8_load(c->impulse), speed = row_speed(&p, n, ja, jb), now;
-        if (with_bias) {
-            bias = tl_f8_select(apart, bias, tl_f8_max(tl_f8_mul(gap, rate), push));
-            tl_f8 scale = tl_f8_select(apart, one, soft_mass);
-            tl_f8 give = tl_f8_mul(tl_f8_select(apart, zero, soft_impulse), old);
-            now = tl_f8_sub(tl_f8_sub(old, tl_f8_mul(tl_f8_mul(tl_f8_load(c->mass), scale), tl_f8_add(speed, bias))), give);
-        } else {
-            now = tl_f8_sub(old, tl_f8_mul(tl_f8_load(c->mass), tl_f8_add(speed, bias)));
-        }
+        tl_f8 goal = tl_f8_mul(tl_f8_max(gap, zero), inverse_h);
+        tl_f8 old = tl_f8_load(c->impulse), excess = tl_f8_add(row_speed(&p, n, ja, jb), goal);
+        tl_f8 now = tl_f8_sub(old, tl_f8_mul(tl_f8_load(c->mass), excess));
         now = tl_f8_max(now, zero);
         tl_f8_store(c->impulse, now);
         if (g->bounces) {
@@ -148,18 +138,42 @@ static inline void solve_contact_group(const tl_step *step, tl_contact_group *g,
         }
         apply_row(&p, n, ja, jb, tl_f8_sub(now, old));
     }
-    store_pair(step, g->a, g->b, &p);
+    store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+}
+
+/* One Gauss-Seidel pass over displacements: each point in overlap takes back its share of what the slop does not allow. */
+static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    const float *moves = tl_row_moved(step->h)->f;
+    float *pushes = tl_row_push(step->h)->f;
+    const tl_settings *settings = &step->h->settings;
+    tl_f8 zero = tl_f8_zero(), share = tl_f8_set1(settings->push_share), slop = tl_f8_set1(settings->push_slop);
+    tl_f8 most = tl_f8_set1(settings->push_speed * step->sub);
+    for (uint32_t k = first; k < last; k++) {
+        const tl_contact_group *g = &tl_group_pool(step->h)[k];
+        pair_velocity p;
+        tl_f8 r[8];
+        load_pair(pushes, g->a, g->b, &p);
+        v8 n = v8_load(g->normal[0]);
+        tl_f8_load_rows(moves, g->a, r);
+        v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
+        tl_f8_load_rows(moves, g->b, r);
+        v8 db = v8_of(r[3], r[4], r[5]);
+        tl_f8 way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
+        for (uint32_t i = 0; i < g->points; i++) {
+            const tl_contact_lane_point *c = &g->point[i];
+            v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
+            tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
+            gap = tl_f8_add(gap, row_speed(&p, n, ja, jb));
+            tl_f8 depth = tl_f8_max(tl_f8_sub(tl_f8_neg(gap), slop), zero);
+            apply_row(&p, n, ja, jb, tl_f8_mul(tl_f8_load(c->mass), tl_f8_min(tl_f8_mul(depth, share), most)));
+        }
+        store_pair(pushes, g->a, g->b, &p);
+    }
 }
 
 static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
-        solve_contact_group(step, &tl_group_pool(step->h)[i], 1);
-    }
-}
-
-static void relax_contacts(const tl_step *step, uint32_t first, uint32_t last) {
-    for (uint32_t i = first; i < last; i++) {
-        solve_contact_group(step, &tl_group_pool(step->h)[i], 0);
+        solve_contact_group(step, &tl_group_pool(step->h)[i]);
     }
 }
 
@@ -168,7 +182,7 @@ static void warm_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         const tl_contact_group *g = &tl_group_pool(step->h)[i];
         pair_velocity p;
-        load_pair(step, g->a, g->b, &p);
+        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
         v8 n = v8_load(g->normal[0]), t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
         apply_row(&p, t1, v8_load(g->ja1[0]), v8_load(g->jb1[0]), tl_f8_load(g->tangent_impulse[0]));
         apply_row(&p, t2, v8_load(g->ja2[0]), v8_load(g->jb2[0]), tl_f8_load(g->tangent_impulse[1]));
@@ -177,7 +191,7 @@ static void warm_contacts(const tl_step *step, uint32_t first, uint32_t last) {
             const tl_contact_lane_point *c = &g->point[k];
             apply_row(&p, n, v8_load(c->ja[0]), v8_load(c->jb[0]), tl_f8_load(c->impulse));
         }
-        store_pair(step, g->a, g->b, &p);
+        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
 }
 
@@ -190,7 +204,7 @@ static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) 
             continue;
         }
         pair_velocity p;
-        load_pair(step, g->a, g->b, &p);
+        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
         v8 n = v8_load(g->normal[0]);
         tl_f8 restitution = tl_f8_load(g->restitution);
         for (uint32_t k = 0; k < g->points; k++) {
@@ -206,6 +220,6 @@ static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) 
             tl_f8_store(c->impulse, tl_f8_select(bounces, zero, old));
             apply_row(&p, n, ja, jb, tl_f8_sub(now, old));
         }
-        store_pair(step, g->a, g->b, &p);
+        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
 }

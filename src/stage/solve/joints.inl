@@ -85,7 +85,7 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int w
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        load_pair(step, g->a, g->b, &p);
+        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
         for (uint32_t k = g->rows; k-- > g->fixed;) {
             int linear = is_linear_row(g->code[k]);
             if (g->code[k] / TL_ROW_TYPES == TL_ROW_DRIVE) {
@@ -95,7 +95,7 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int w
             }
         }
         solve_equalities(step, g, rows, &p, with_bias);
-        store_pair(step, g->a, g->b, &p);
+        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
 }
 
@@ -107,10 +107,10 @@ static void warm_joints(const tl_step *step, uint32_t first, uint32_t last) {
         const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        load_pair(step, g->a, g->b, &p);
+        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
         for (uint32_t k = 0; k < g->rows; k++) {
             joint_apply(&p, &rows[k], is_linear_row(g->code[k]), tl_f8_load(rows[k].impulse));
         }
-        store_pair(step, g->a, g->b, &p);
+        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
 }

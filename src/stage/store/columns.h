@@ -55,6 +55,7 @@
     X(row_velocity, tl_row8, ROW, VELOCITY, STEP, 4)                     \
     X(row_before, tl_row8, ROW, VELOCITY, STEP, 4)                       \
     X(row_moved, tl_row8, ROW, POSITION, STEP, 4)                        \
+    X(row_push, tl_row8, ROW, POSITION, STEP, 4)                         \
     X(row_pose, tl_row8, ROW, POSITION, STEP, 4)                         \
     X(row_frame, tl_row8, ROW, ROWS, STEP, 4)                            \
     X(row_force, tl_row8, ROW, ROWS, STEP, 4)                            \
