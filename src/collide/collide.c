@@ -1,18 +1,24 @@
-/* The table of pairs: which algorithm answers which two types, and the mirror of those that know one order only. */
+/* The table of pairs: which algorithm answers which two types. Pairs are worked out with the higher type as A and
+ * mirrored where they came the other way round. Metres. */
 #include "collide/general.h"
 #include "collide/polyhedra.h"
+#include "collide/round.h"
 
 #include <string.h>
 
 /* Poses further out than this (m) leave the shapes' sizes below the rounding of the distance. */
 #define FAR_AWAY 3e7f
 
+static int is_far(talus_vec3 t) { return tl_max(tl_max(tl_abs(t.x), tl_abs(t.y)), tl_abs(t.z)) > FAR_AWAY; }
+
 /* Two shapes too far apart for their form to count. */
-static void collide_far(const tl_core *a, const tl_core *b, float margin, tl_manifold *out) {
-    talus_vec3 t = b->t;
+static void collide_far(const tl_convex *a, const tl_convex *b, talus_vec3 t, float margin, tl_manifold *out) {
+    tl_core ca, cb;
+    tl_core_init(&ca, a, NULL);
+    tl_core_init(&cb, b, NULL);
     float m = tl_max(tl_max(tl_abs(t.x), tl_abs(t.y)), tl_abs(t.z));
     talus_vec3 n = tl_normalize_or(t, tl_v(0.0f, 1.0f, 0.0f));
-    float length = tl_dot(n, tl_scale(t, 1.0f / m));
+    float length = tl_dot(n, tl_v(t.x / m, t.y / m, t.z / m));
     /* a distance past the largest float is the largest float */
     float distance = m > 3.4e38f / length ? 3.4e38f : m * length;
     out->normal = n;
@@ -20,27 +26,55 @@ static void collide_far(const tl_core *a, const tl_core *b, float margin, tl_man
     if (distance <= margin) {
         out->count = 1;
         out->point[0].position = tl_scale(t, 0.5f);
-        out->point[0].separation = distance - (a->size + b->size);
+        out->point[0].separation = distance - (ca.size + cb.size);
         out->point[0].id = 0;
     }
 }
 
-static int is_far(talus_vec3 t) { return tl_max(tl_max(tl_abs(t.x), tl_abs(t.y)), tl_abs(t.z)) > FAR_AWAY; }
+static int even_capsule(const tl_convex *s) {
+    return s->geometry.type == TALUS_CAPSULE && s->geometry.radius_top == s->geometry.radius_bottom;
+}
+
+static void collide_ordered(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin,
+                            tl_pair_cache *cache, tl_manifold *out) {
+    tl_core ca, cb;
+    if (b->geometry.type == TALUS_SPHERE) {
+        tl_collide_ball(a, b, b_in_a, margin, cache, out);
+        return;
+    }
+    if (even_capsule(a) && even_capsule(b)) {
+        tl_collide_capsules(a, b, b_in_a, margin, out);
+        return;
+    }
+    tl_core_init(&ca, a, NULL);
+    tl_core_init(&cb, b, b_in_a);
+    if (a->geometry.type >= TALUS_BOX) {
+        if (b->geometry.type >= TALUS_BOX && tl_collide_polyhedra(&ca, &cb, margin, cache, out)) {
+            return;
+        }
+        if (cb.kind == TL_CORE_SEGMENT && tl_collide_capsule_polyhedron(&ca, &cb, margin, cache, out)) {
+            return;
+        }
+    }
+    tl_collide_general(&ca, &cb, margin, cache, out);
+}
 
 void tl_collide(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin, tl_pair_cache *cache,
                 tl_manifold *out) {
-    tl_core ca, cb;
-    tl_core_init(&ca, a, NULL);
-    tl_core_init(&cb, b, b_in_a);
     memset(out, 0, sizeof *out);
     if (is_far(b_in_a->position)) {
-        collide_far(&ca, &cb, margin, out);
+        collide_far(a, b, b_in_a->position, margin, out);
         return;
     }
-    int flat =
-        (ca.kind == TL_CORE_BOX || ca.kind == TL_CORE_HULL) && (cb.kind == TL_CORE_BOX || cb.kind == TL_CORE_HULL);
-    if (flat && tl_collide_polyhedra(&ca, &cb, margin, cache, out)) {
+    if (a->geometry.type >= b->geometry.type) {
+        collide_ordered(a, b, b_in_a, margin, cache, out);
         return;
     }
-    tl_collide_general(&ca, &cb, margin, cache, out);
+    talus_pose a_in_b = {tl_neg(tl_rotate_back(b_in_a->rotation, b_in_a->position)),
+                         tl_quat_conjugate(b_in_a->rotation)};
+    collide_ordered(b, a, &a_in_b, margin, cache, out);
+    out->normal = tl_neg(tl_rotate(b_in_a->rotation, out->normal));
+    for (uint32_t i = 0; i < out->count; ++i) {
+        out->point[i].position = tl_pose_point(b_in_a, out->point[i].position);
+    }
 }

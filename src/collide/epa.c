@@ -290,11 +290,13 @@ static void expand(polytope *p) {
         talus_vec3 m = to_unit(p->face[at].n);
         uint32_t v = p->vertex_count;
         float bound = support(p, m, v);
-        note(p, bound, m, &p->face[at]);
-        if ((double)p->best_depth * p->scale - least <= TOLERANCE ||
-            vec_dot(p->face[at].n, p->w[v]) - least <= TOLERANCE) {
+        if (vec_dot(p->face[at].n, p->w[v]) - least <= TOLERANCE) {
+            /* the nearest face is the surface: its own points are the ones that touch */
+            p->have_best = 0;
+            note(p, bound, m, &p->face[at]);
             return;
         }
+        note(p, bound, m, &p->face[at]);
         p->vertex_count = v + 1u;
         if (!insert(p, v, at)) {
             return;

@@ -49,6 +49,14 @@ void tl_collide_general(const tl_core *a, const tl_core *b, float margin, tl_pai
     }
     tl_cache_keep_axis(cache, touch.normal);
 
+    if (a->kind == TL_CORE_POINT || b->kind == TL_CORE_POINT) {
+        out->normal = touch.normal;
+        out->count = 1;
+        out->point[0].position = tl_scale(tl_add(touch.point_a, touch.point_b), 0.5f);
+        out->point[0].separation = touch.separation;
+        out->point[0].id = 0;
+        return;
+    }
     tl_feature fa, fb;
     tl_feature_find(a, touch.normal, 1, &fa);
     tl_feature_find(b, tl_neg(touch.normal), 1, &fb);

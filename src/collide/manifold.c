@@ -13,6 +13,7 @@
 /* A point this much less deep must be that times further out to be kept instead. */
 #define GAP_WEIGHT 4.0f
 #define FROM_REFERENCE 0x8000u
+#define RIM_ID 0x7ffeu /* the number of the lowest point of a disc */
 
 typedef struct candidate {
     talus_vec3 p; /* midway */
@@ -330,27 +331,38 @@ static uint32_t touch_id(const tl_feature *a, const tl_feature *b) {
     return tl_point_id(TL_ID_POINTS, a->count == 1 ? a->vertex[0] : 0x7fffu, b->count == 1 ? b->vertex[0] : 0x7fffu);
 }
 
-/* The touch's own point, where the features gave none as deep. */
-static uint32_t add_touch(const tl_touch *touch, uint32_t id, float tolerance, candidate *c, uint32_t count) {
+/* One more point, where the others are not as deep. */
+static uint32_t add_point(const candidate *own, float tolerance, candidate *c, uint32_t count) {
     uint32_t near = count;
     float near2 = 3e38f;
-    candidate own;
-    own.p = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
-    own.gap = touch->separation;
-    own.id = id;
     for (uint32_t i = 0; i < count; ++i) {
-        if (c[i].gap <= touch->separation + tolerance) {
+        if (c[i].gap <= own->gap + tolerance) {
             return count;
         }
-        float d2 = tl_length2(tl_sub(c[i].p, own.p));
+        float d2 = tl_length2(tl_sub(c[i].p, own->p));
         near = d2 < near2 ? i : near;
         near2 = tl_min(near2, d2);
     }
     if (count < TL_MANIFOLD_POINTS) {
         near = count++;
     }
-    c[near] = own;
+    c[near] = *own;
     return count;
+}
+
+/* The lowest point of a disc, which the polygon that stands for the disc leaves out. */
+static uint32_t add_rim(const tl_core *core, const tl_feature *ref, int ref_is_a, talus_vec3 n, float margin,
+                        float tolerance, candidate *c, uint32_t count) {
+    candidate own;
+    tl_feature point;
+    uint32_t index = 0;
+    point.count = 1;
+    point.point[0] = tl_core_support(core, ref_is_a ? tl_neg(n) : n, &index);
+    point.vertex[0] = RIM_ID;
+    if (clip_point(ref, &point, ref_is_a, n, margin, tolerance, &own) == 0) {
+        return count;
+    }
+    return add_point(&own, tolerance, c, count);
 }
 
 /* No point is nearer than the shapes are; beside the face, within the slack, it may have seemed so. */
@@ -371,12 +383,16 @@ static void write(const candidate *c, uint32_t count, const tl_touch *touch, tl_
     }
 }
 
+static int face_is_reference(const tl_feature *a, const tl_feature *b, talus_vec3 n) {
+    return tl_dot(a->normal, n) >= -tl_dot(b->normal, n) - 1e-3f;
+}
+
 static uint32_t meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, float tolerance,
                      candidate *c) {
     int a_face = a->count >= 3, b_face = b->count >= 3;
     uint32_t count = 0;
     if (a_face && b_face) {
-        a_face = tl_dot(a->normal, n) >= -tl_dot(b->normal, n) - 1e-3f;
+        a_face = face_is_reference(a, b, n);
         b_face = !a_face;
     }
     if (a_face || b_face) {
@@ -422,6 +438,17 @@ void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch,
         tl_feature_find(a, n, 0, &fa);
     }
     uint32_t count = meet(&fa, &fb, n, margin, tolerance, c);
-    count = add_touch(touch, touch_id(&fa, &fb), tolerance, c, count);
+    if (fa.count >= 3 && fb.count >= 3) {
+        int a_is_ref = face_is_reference(&fa, &fb, n);
+        const tl_core *inc = a_is_ref ? b : a;
+        if (inc->kind == TL_CORE_FRUSTUM) {
+            count = add_rim(inc, a_is_ref ? &fa : &fb, a_is_ref, n, margin, tolerance, c, count);
+        }
+    }
+    candidate own;
+    own.p = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
+    own.gap = touch->separation;
+    own.id = touch_id(&fa, &fb);
+    count = add_point(&own, tolerance, c, count);
     write(c, count, touch, out);
 }

@@ -51,9 +51,11 @@ static void check_manifold(const char *name, const tl_convex *a, const tl_convex
     p.pose = d_pose_of(pose);
     d3 n = d3_of(m->normal);
     CHECK(fabs(d3_length(n) - 1.0) < 1e-5, "%s: normal of length %g", name, d3_length(n));
-    CHECK(fabs(s - expected) <= tolerance, "%s: separation %.9g expected %.9g count %u", name, s, expected, m->count);
-    double along = d_separation(&p, n);
+    double along = d_separation(&p, d3_unit(n));
     CHECK(along >= expected - tolerance, "%s: normal separates by %.9g, expected %.9g", name, along, expected);
+    /* the search may have missed what the shapes' own normal proves */
+    expected = fmax(expected, along);
+    CHECK(fabs(s - expected) <= tolerance, "%s: separation %.9g expected %.9g count %u", name, s, expected, m->count);
     for (uint32_t i = 0; i < m->count; ++i) {
         d3 mid = d3_of(m->point[i].position), half = d3_scale(n, 0.5 * (double)m->point[i].separation);
         d3 on_a = d3_sub(mid, half), on_b = d_rotate_back(&p.pose, d3_sub(d3_add(mid, half), p.pose.t));
