@@ -200,11 +200,12 @@ static void place_below(gltf_loader *loader, int root) {
 static void place_scene(gltf_loader *loader) {
     gltf_document *document = &loader->document;
     gltf_list scenes = gltf_list_open(&document->root, "scenes");
-    int index = gltf_index(&document->root, "scene", scenes.count, "scenes");
-    loader->scene_index = index < 0 ? 0 : index;
     if (scenes.count == 0) {
         gltf_fail(&scenes.at, GLTF_BROKEN, "is missing or empty: there is no scene to run");
-    } else if (loader->error->status == GLTF_OK) {
+    }
+    int index = gltf_index(&document->root, "scene", scenes.count, "scenes");
+    loader->scene_index = index < 0 ? 0 : index;
+    if (loader->error->status == GLTF_OK) {
         gltf_at scene = gltf_list_item(&scenes, loader->scene_index);
         gltf_list roots = gltf_list_open(&scene, "nodes");
         for (int i = 0; i < roots.count && loader->error->status == GLTF_OK; i++) {
