@@ -11,6 +11,8 @@
 #include <string.h>
 
 #define LATTICE 268435456.0 /* 2^28 */
+#define LOCAL_ROUNDS 6u     /* of merging more finely only where it was at fault */
+#define MERGE_ROUNDS (LOCAL_ROUNDS + TL_QH_EXACT + 1u)
 
 static size_t aligned(size_t bytes) { return (bytes + 31u) / 32u * 32u; }
 
@@ -105,6 +107,29 @@ static int snap(tl_qh *q) {
     return 1;
 }
 
+/* Merges and writes, more finely where that did not make a polyhedron. What is exactly flat on the lattice always does.
+ */
+static talus_status finish(tl_qh *q, void *out, size_t out_size, size_t *size) {
+    talus_status status = TALUS_FLAT_HULL;
+    for (uint32_t round = 0u; round < MERGE_ROUNDS; ++round) {
+        int marked = 0;
+        tl_qh_merge(q);
+        status = tl_qh_outline(q, &marked);
+        if (status == TALUS_OK) {
+            status = tl_qh_write(q, out, out_size, size);
+        }
+        if (status != TALUS_FLAT_HULL && status != TALUS_BAD_BLOB) {
+            return status;
+        }
+        if (!marked || round >= LOCAL_ROUNDS) {
+            if (!tl_qh_refine(q)) {
+                return status;
+            }
+        }
+    }
+    return status;
+}
+
 talus_status talus_hull_build(const talus_vec3 *points, uint32_t count, void *scratch, size_t scratch_size, void *out,
                               size_t out_size, size_t *size) {
     if (!points || !scratch || !out || !size) {
@@ -132,18 +157,5 @@ talus_status talus_hull_build(const talus_vec3 *points, uint32_t count, void *sc
     if (!snap(&q) || !tl_qh_grow(&q)) {
         return TALUS_FLAT_HULL;
     }
-    /* Fewer merges each time; the last one joins only what is flat on the lattice, which always makes a polyhedron. */
-    static const double share[] = {1.0, 0.0625, 0.00390625, 0.0};
-    talus_status status = TALUS_FLAT_HULL;
-    for (uint32_t i = 0u; i < sizeof share / sizeof share[0]; ++i) {
-        tl_qh_merge(&q, share[i] * q.tolerance);
-        status = tl_qh_outline(&q, q.tolerance);
-        if (status == TALUS_OK) {
-            status = tl_qh_write(&q, out, out_size, size);
-            if (status == TALUS_OK || status == TALUS_SMALL_BLOCK || status == TALUS_BAD_SHAPE) {
-                return status;
-            }
-        }
-    }
-    return status;
+    return finish(&q, out, out_size, size);
 }

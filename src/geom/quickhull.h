@@ -12,6 +12,7 @@
 #include "geom/hull.h"
 
 #define TL_QH_NONE 0xffffffffu
+#define TL_QH_EXACT 3u
 
 typedef struct tl_qh_triangle {
     int64_t n[3];     /* outward normal, twice the area long: exact, below 2^60 */
@@ -25,6 +26,7 @@ typedef struct tl_qh_triangle {
     uint32_t before, after; /* in the list of triangles that have work; `after` also links the free ones */
     uint32_t mark;          /* the epoch in which a walk last met it */
     uint32_t facet;         /* TL_QH_NONE while free or not yet part of one */
+    uint32_t level;         /* how finely it is to be merged: 0 coarse to TL_QH_EXACT */
     uint32_t alive, queued;
 } tl_qh_triangle;
 
@@ -32,6 +34,7 @@ typedef struct tl_qh_facet {
     tl_d3 normal;   /* unit; the sum of its triangles' */
     uint32_t edge;  /* a half-edge on its outline */
     uint32_t first; /* half-edge of the blob */
+    uint32_t bad;   /* it is to be merged more finely */
 } tl_qh_facet;
 
 typedef struct tl_qh {
@@ -61,16 +64,26 @@ static inline uint32_t tl_qh_origin(const tl_qh *q, uint32_t h) { return q->t[h 
 static inline double tl_qh_height(const tl_qh *q, const tl_qh_triangle *t, uint32_t point) {
     return tl_d_dot(t->unit, tl_d_sub(q->p[point], q->p[t->v[0]]));
 }
+/* The squared distance from p to the segment a b. */
+static inline double tl_qh_segment2(tl_d3 p, tl_d3 a, tl_d3 b) {
+    tl_d3 ab = tl_d_sub(b, a), ap = tl_d_sub(p, a);
+    double s = tl_d_dot(ap, ab), l = tl_d_dot(ab, ab);
+    s = s <= 0.0 ? 0.0 : s >= l ? 1.0 : s / l;
+    tl_d3 d = tl_d_sub(ap, tl_d_scale(ab, s));
+    return tl_d_dot(d, d);
+}
 /* 1, 0 or -1: the point is above, in or below the triangle's plane. Exact. */
 int tl_qh_side(const tl_qh *q, const tl_qh_triangle *t, uint32_t point);
 
 /* Builds the exact hull of those points that stand out by more than the tolerance. False if the points are flat. */
 int tl_qh_grow(tl_qh *q);
-/* Parts the triangles into facets, each flat and convex to the tolerance (lattice units); 0 joins what is exactly flat.
- */
-void tl_qh_merge(tl_qh *q, double tolerance);
-/* Makes the blob's half-edges of the facets. TALUS_FLAT_HULL where the outlines do not make a polyhedron. */
-talus_status tl_qh_outline(tl_qh *q, double tolerance);
+/* Parts the triangles into facets, each flat and convex to the tolerance that the level of its triangles allows. */
+void tl_qh_merge(tl_qh *q);
+/* Asks for a finer merge of all triangles; false if none can be finer. */
+int tl_qh_refine(tl_qh *q);
+/* Makes the blob's half-edges of the facets. TALUS_FLAT_HULL where the outlines do not make a polyhedron; the facets at
+ * fault are then marked for the next tl_qh_merge, or none of them. */
+talus_status tl_qh_outline(tl_qh *q, int *marked);
 /* Writes the blob. */
 talus_status tl_qh_write(const tl_qh *q, void *out, size_t out_size, size_t *size);
 

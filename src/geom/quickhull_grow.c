@@ -76,6 +76,7 @@ static uint32_t triangle_new(tl_qh *q, uint32_t a, uint32_t b, uint32_t c) {
     t->best_height = 0.0;
     t->mark = 0u;
     t->facet = TL_QH_NONE;
+    t->level = 0u;
     t->alive = 1u;
     t->queued = 0u;
     return i;
@@ -294,14 +295,6 @@ static void run(tl_qh *q) {
     }
 }
 
-static double segment_distance2(tl_d3 p, tl_d3 a, tl_d3 b) {
-    tl_d3 ab = tl_d_sub(b, a), ap = tl_d_sub(p, a);
-    double s = tl_d_dot(ap, ab), l = tl_d_dot(ab, ab);
-    s = s <= 0.0 ? 0.0 : s >= l ? 1.0 : s / l;
-    tl_d3 d = tl_d_sub(ap, tl_d_scale(ab, s));
-    return tl_d_dot(d, d);
-}
-
 /* The squared distance from a point above a triangle's plane to the triangle. */
 static double triangle_distance2(const tl_qh *q, const tl_qh_triangle *t, uint32_t point) {
     tl_d3 p = q->p[point];
@@ -310,7 +303,7 @@ static double triangle_distance2(const tl_qh *q, const tl_qh_triangle *t, uint32
         tl_d3 a = q->p[t->v[i]], b = q->p[t->v[(i + 1u) % 3u]];
         tl_d3 inward = tl_d_cross(t->unit, tl_d_sub(b, a));
         if (tl_d_dot(inward, tl_d_sub(p, a)) < 0.0) {
-            double d = segment_distance2(p, a, b);
+            double d = tl_qh_segment2(p, a, b);
             best = best < 0.0 || d < best ? d : best;
         }
     }

@@ -51,7 +51,7 @@ static uint32_t gather(tl_qh *q, uint32_t seed, double band) {
             tl_qh_triangle *t = &q->t[across / 3u];
             /* Two of its vertices are shared with what is gathered; the third is the one before the half-edge. */
             uint32_t apex = t->v[(across + 2u) % 3u];
-            if (t->mark == epoch || t->facet != TL_QH_NONE) {
+            if (t->mark == epoch || t->facet != TL_QH_NONE || t->level > s->level) {
                 continue;
             }
             /* Facing much the same way, so that a thin edge is not folded over and lost. */
@@ -185,6 +185,7 @@ static void make_facet(tl_qh *q, uint32_t edge, tl_d3 normal) {
     f->normal = normal;
     f->edge = edge;
     f->first = TL_QH_NONE;
+    f->bad = 0u;
 }
 
 /* Makes a facet of the gathered triangles, if they are fit for one. */
@@ -218,21 +219,42 @@ static int accept(tl_qh *q, uint32_t n, double band) {
     return 1;
 }
 
-void tl_qh_merge(tl_qh *q, double tolerance) {
-    static const double share[] = {1.0, 0.0625};
+int tl_qh_refine(tl_qh *q) {
+    int finer = 0;
     for (uint32_t i = 0u; i < q->t_used; ++i) {
-        q->t[i].facet = TL_QH_NONE;
+        if (q->t[i].alive && q->t[i].level < TL_QH_EXACT) {
+            ++q->t[i].level;
+            finer = 1;
+        }
+    }
+    return finer;
+}
+
+/* Triangles of facets at fault move up a level, and all are free again. */
+static void reset(tl_qh *q) {
+    for (uint32_t i = 0u; i < q->t_used; ++i) {
+        tl_qh_triangle *t = &q->t[i];
+        if (t->facet != TL_QH_NONE && q->f[t->facet].bad && t->level < TL_QH_EXACT) {
+            ++t->level;
+        }
+        t->facet = TL_QH_NONE;
     }
     q->f_count = 0u;
+}
+
+void tl_qh_merge(tl_qh *q) {
+    static const double share[TL_QH_EXACT] = {1.0, 0.0625, 0.00390625};
+    reset(q);
     uint32_t live = sort_by_area(q);
     for (uint32_t i = 0u; i < live; ++i) {
-        uint32_t seed = q->list_b[i], n = 0u;
+        uint32_t seed = q->list_b[i], n = 2u;
         int done = q->t[seed].facet != TL_QH_NONE;
-        for (uint32_t k = 0u; k < 2u && !done && tolerance > 0.0; ++k) {
-            n = gather(q, seed, share[k] * tolerance);
-            done = n > 1u && accept(q, n, share[k] * tolerance);
+        /* A seed that has no neighbour in the wider band has none in a narrower one. */
+        for (uint32_t k = q->t[seed].level; k < TL_QH_EXACT && !done && n > 1u; ++k) {
+            n = gather(q, seed, share[k] * q->tolerance);
+            done = n > 1u && accept(q, n, share[k] * q->tolerance);
         }
-        if (!done && (tolerance == 0.0 || n > 1u)) {
+        if (!done && n > 1u) {
             n = gather(q, seed, -1.0);
             /* Half a lattice unit: what rounding makes of heights that are exactly 0. */
             done = n > 1u && accept(q, n, 0.5);

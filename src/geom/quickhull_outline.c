@@ -30,57 +30,68 @@ static void number_vertices(tl_qh *q) {
     }
 }
 
-static double line_distance(tl_d3 p, tl_d3 a, tl_d3 b) {
-    tl_d3 ab = tl_d_sub(b, a);
-    double l = tl_d_length(ab);
-    return l > 0.0 ? tl_d_length(tl_d_cross(ab, tl_d_sub(p, a))) / l : tl_d_length(tl_d_sub(p, a));
-}
-
 /* Follows the chain of edges that starts with e to its last one; false if what it leaves out is too far off the line.
  */
-static int chain_end(const tl_qh *q, uint32_t e, double limit, uint32_t *last) {
+static int chain_end(const tl_qh *q, uint32_t e, uint32_t *last) {
     uint32_t end = e, after = outline_next(q, e);
     while (q->at[tl_qh_origin(q, after)] == TL_QH_NONE) {
         end = after;
         after = outline_next(q, after);
     }
+    *last = end;
     tl_d3 a = q->p[tl_qh_origin(q, e)], b = q->p[tl_qh_origin(q, after)];
     for (uint32_t i = e; i != end;) {
         i = outline_next(q, i);
-        if (line_distance(q->p[tl_qh_origin(q, i)], a, b) > limit) {
+        if (tl_qh_segment2(q->p[tl_qh_origin(q, i)], a, b) > 4.0 * q->tolerance * q->tolerance) {
             return 0;
         }
     }
-    *last = end;
     return 1;
 }
 
-/* The half-edges of one facet, from its corner with the lowest number. */
-static int outline_facet(tl_qh *q, uint32_t facet, double limit, uint32_t *made) {
-    tl_qh_facet *f = &q->f[facet];
-    uint32_t start = TL_QH_NONE, e = f->edge;
+static int is_single(const tl_qh *q, uint32_t facet) {
+    uint32_t t = q->f[facet].edge / 3u, same = 0u;
+    for (uint32_t k = 0u; k < 3u; ++k) {
+        same += facet_of(q, q->t[t].twin[k]) == facet;
+    }
+    return same == 0u;
+}
+
+/* Of two facets between which a chain is bent the smaller is at fault, unless it is a triangle. */
+static void blame(tl_qh *q, uint32_t facet, uint32_t across) {
+    uint32_t smaller = facet > across ? facet : across, larger = facet > across ? across : facet;
+    q->f[is_single(q, smaller) ? larger : smaller].bad = 1u;
+}
+
+/* The corner of the facet with the lowest number, as a half-edge of the outline. */
+static uint32_t first_corner(const tl_qh *q, uint32_t facet) {
+    uint32_t start = TL_QH_NONE, e = q->f[facet].edge;
     do {
         uint32_t v = q->at[tl_qh_origin(q, e)];
         if (v != TL_QH_NONE && (start == TL_QH_NONE || v < q->at[tl_qh_origin(q, start)])) {
             start = e;
         }
         e = outline_next(q, e);
-    } while (e != f->edge);
+    } while (e != q->f[facet].edge);
+    return start;
+}
+
+/* The half-edges of one facet; false if it is not a face of a polyhedron. */
+static int outline_facet(tl_qh *q, uint32_t facet, uint32_t *made) {
+    tl_qh_facet *f = &q->f[facet];
+    uint32_t start = first_corner(q, facet), sides = 0u, before = TL_QH_NONE, e = start;
     if (start == TL_QH_NONE) {
+        f->bad = 1u;
         return 0;
     }
-    uint32_t sides = 0u, before = TL_QH_NONE;
-    e = start;
+    int good = 1;
     do {
-        uint32_t last;
-        if (!chain_end(q, e, limit, &last)) {
-            return 0;
-        }
+        uint32_t last, straight = (uint32_t)chain_end(q, e, &last);
         uint32_t across = tl_qh_twin(q, last), id = q->edge_id[across];
-        if (id == TL_QH_NONE) {
-            id = 2u * (*made)++;
-        } else {
-            id ^= 1u;
+        id = id == TL_QH_NONE ? 2u * (*made)++ : id ^ 1u;
+        if (!straight) {
+            blame(q, facet, facet_of(q, across));
+            good = 0;
         }
         if (id >= q->edge_count) {
             return 0;
@@ -99,7 +110,10 @@ static int outline_facet(tl_qh *q, uint32_t facet, double limit, uint32_t *made)
         e = outline_next(q, last);
     } while (e != start);
     q->edge[before].next = (uint16_t)f->first;
-    return sides >= 3u;
+    if (sides < 3u) {
+        blame(q, facet, facet_of(q, tl_qh_twin(q, start)));
+    }
+    return good && sides >= 3u;
 }
 
 /* Two faces of a polyhedron share one edge at most, and two vertices one edge at most. */
@@ -136,9 +150,10 @@ static int is_simple(tl_qh *q) {
     return 1;
 }
 
-talus_status tl_qh_outline(tl_qh *q, double tolerance) {
+talus_status tl_qh_outline(tl_qh *q, int *marked) {
     number_vertices(q);
     uint32_t v = q->vertex_count;
+    *marked = 0;
     if (v > TALUS_HULL_MAX_VERTICES) {
         return TALUS_TOO_MANY_POINTS;
     }
@@ -148,13 +163,14 @@ talus_status tl_qh_outline(tl_qh *q, double tolerance) {
     /* By Euler's formula. */
     q->edge_count = 2u * (v + q->f_count - 2u);
     memset(q->edge_id, 0xff, 3u * q->t_used * sizeof *q->edge_id);
-    uint32_t made = 0u;
+    uint32_t made = 0u, good = 0u;
     for (uint32_t f = 0u; f < q->f_count; ++f) {
-        if (!outline_facet(q, f, 2.0 * tolerance, &made)) {
-            return TALUS_FLAT_HULL;
-        }
+        good += (uint32_t)outline_facet(q, f, &made);
     }
-    return 2u * made == q->edge_count && is_simple(q) ? TALUS_OK : TALUS_FLAT_HULL;
+    for (uint32_t f = 0u; f < q->f_count; ++f) {
+        *marked |= q->f[f].bad != 0u;
+    }
+    return good == q->f_count && 2u * made == q->edge_count && is_simple(q) ? TALUS_OK : TALUS_FLAT_HULL;
 }
 
 static void write_points(const tl_qh *q, talus_hull *h) {
