@@ -100,7 +100,7 @@ int tl_collide_capsule_polyhedron(const tl_core *a, const tl_core *b, float marg
     touch.separation = s - r;
     set_segment(&fb, tl_mad(c, -r, n), u);
     tl_manifold_build(&fa, &fb, &touch, margin, tolerance, out);
-    if (out->count == 0 || (s > 0.0f && tl_manifold_least(out) + r > 1.015f * s + tolerance)) {
+    if (out->count == 0 || (s > 0.0f && tl_manifold_least(out) + r > 1.0001f * s + tolerance)) {
         tl_collide_general(a, b, margin, cache, out);
     }
     return 1;

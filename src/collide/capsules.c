@@ -2,8 +2,8 @@
  * meet in two points. Metres. */
 #include "collide/round.h"
 
-/* The squared sine of 3 degrees: segments closer to parallel meet in two points. */
-#define PARALLEL_SIN2 0.0027f
+/* The squared sine of 2 degrees: segments closer to parallel meet in two points. */
+#define PARALLEL_SIN2 0.0012f
 
 void tl_segment_segment(talus_vec3 ca, talus_vec3 ua, talus_vec3 cb, talus_vec3 ub, talus_vec3 *pa, talus_vec3 *pb) {
     /* centres and half axes: parameters run from -1 to 1 */

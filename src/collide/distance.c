@@ -14,8 +14,9 @@ float tl_distance(const tl_convex *a, const tl_convex *b, const talus_pose *b_in
     tl_gjk_state state = tl_gjk_run(&ca, &cb, guess, 3e38f, &simplex, &near);
     float distance = near.distance - (ca.radius + cb.radius);
     if (state != TL_GJK_APART || distance <= 0.0f) {
-        *point_a = tl_scale(
-            tl_add(tl_mad(near.point_a, ca.radius, near.normal), tl_mad(near.point_b, -cb.radius, near.normal)), 0.5f);
+        /* between the cores, within reach of both radii */
+        float low = tl_max(near.distance - cb.radius, 0.0f), high = tl_min(near.distance, ca.radius);
+        *point_a = tl_mad(near.point_a, 0.5f * (low + high), near.normal);
         *point_b = *point_a;
         return 0.0f;
     }

@@ -277,29 +277,35 @@ static void note(polytope *p, float depth, talus_vec3 m, const face *f) {
     }
 }
 
-static void expand(polytope *p) {
-    while (p->vertex_count < MAX_VERTICES) {
-        uint32_t at = 0;
-        double least = 1e300;
-        for (uint32_t i = 0; i < p->face_end; ++i) {
-            if (p->face[i].state == 1 && p->face[i].d < least) {
-                least = p->face[i].d;
-                at = i;
-            }
+/* Weights of the corners for the point of a face's plane next to the origin, not brought to the sum 1, which is
+ * returned. */
+static double weigh(const polytope *p, const uint16_t *v, double *l) {
+    vec a = p->w[v[0]], b = p->w[v[1]], c = p->w[v[2]];
+    vec n = vec_cross(vec_sub(b, a), vec_sub(c, a));
+    l[0] = vec_dot(vec_cross(b, c), n);
+    l[1] = vec_dot(vec_cross(c, a), n);
+    l[2] = vec_dot(vec_cross(a, b), n);
+    return l[0] + l[1] + l[2];
+}
+
+static double least_weight(const double *l) {
+    double m = l[0] < l[1] ? l[0] : l[1];
+    return m < l[2] ? m : l[2];
+}
+
+/* A flat part of the surface may be cut into several faces: takes the one that the origin lies over. */
+static void find_over(polytope *p) {
+    vec n = {-(double)p->best.normal.x, -(double)p->best.normal.y, -(double)p->best.normal.z};
+    double depth = (double)p->best_depth * p->scale, most = -1e300, l[3];
+    for (uint32_t i = 0; i < p->face_end; ++i) {
+        const face *f = &p->face[i];
+        if (f->state != 1 || absolute(f->d - depth) > 10.0 * TOLERANCE || vec_dot(f->n, n) < 0.999) {
+            continue;
         }
-        talus_vec3 m = to_unit(p->face[at].n);
-        uint32_t v = p->vertex_count;
-        float bound = support(p, m, v);
-        if (vec_dot(p->face[at].n, p->w[v]) - least <= TOLERANCE) {
-            /* the nearest face is the surface: its own points are the ones that touch */
-            p->have_best = 0;
-            note(p, bound, m, &p->face[at]);
-            return;
-        }
-        note(p, bound, m, &p->face[at]);
-        p->vertex_count = v + 1u;
-        if (!insert(p, v, at)) {
-            return;
+        double s = weigh(p, f->v, l), least = s > 0.0 ? least_weight(l) / s : -1e300;
+        if (least > most) {
+            most = least;
+            memcpy(p->best_face, f->v, sizeof f->v);
         }
     }
 }
@@ -307,10 +313,8 @@ static void expand(polytope *p) {
 /* The points of A and B where the face that set the depth comes nearest to the origin. */
 static void witness(polytope *p) {
     const uint16_t *v = p->best_face;
-    vec a = p->w[v[0]], b = p->w[v[1]], c = p->w[v[2]];
-    vec n = vec_cross(vec_sub(b, a), vec_sub(c, a));
-    double l[3] = {vec_dot(vec_cross(b, c), n), vec_dot(vec_cross(c, a), n), vec_dot(vec_cross(a, b), n)};
-    double s = 0.0;
+    double l[3], s = 0.0;
+    weigh(p, v, l);
     for (int i = 0; i < 3; ++i) {
         l[i] = l[i] > 0.0 ? l[i] : 0.0;
         s += l[i];
@@ -342,6 +346,34 @@ static void flat_depth(polytope *p) {
     p->best_depth = tl_min(forth, back);
     for (uint32_t i = 0; i < 3; ++i) {
         p->best_face[i] = (uint16_t)(i < c ? i : 0u);
+    }
+}
+
+static void expand(polytope *p) {
+    while (p->vertex_count < MAX_VERTICES) {
+        uint32_t at = 0;
+        double least = 1e300;
+        for (uint32_t i = 0; i < p->face_end; ++i) {
+            if (p->face[i].state == 1 && p->face[i].d < least) {
+                least = p->face[i].d;
+                at = i;
+            }
+        }
+        talus_vec3 m = to_unit(p->face[at].n);
+        uint32_t v = p->vertex_count;
+        float bound = support(p, m, v);
+        if (vec_dot(p->face[at].n, p->w[v]) - least <= TOLERANCE) {
+            /* the nearest face is the surface: its own points are the ones that touch */
+            p->have_best = 0;
+            note(p, bound, m, &p->face[at]);
+            find_over(p);
+            return;
+        }
+        note(p, bound, m, &p->face[at]);
+        p->vertex_count = v + 1u;
+        if (!insert(p, v, at)) {
+            return;
+        }
     }
 }
 

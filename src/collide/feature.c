@@ -118,28 +118,17 @@ void tl_feature_edge(const tl_core *core, uint32_t from, uint32_t to, uint32_t e
     place(core, out);
 }
 
-/* The face that looks along d the most: of all on a small hull, of those around vertex v on a large one. */
+/* Of the faces around vertex v the one that looks along d the most. */
 static uint32_t hull_face_along(const talus_hull *hull, talus_vec3 d, uint32_t v) {
     const float *n = tl_hull_planes(hull);
-    uint32_t stride = hull->face_stride, best = 0;
-    if (hull->face_count <= 64u) {
-        float most = n[0] * d.x + n[stride] * d.y + n[2u * stride] * d.z;
-        for (uint32_t i = 1; i < hull->face_count; ++i) {
-            float s = n[i] * d.x + n[stride + i] * d.y + n[2u * stride + i] * d.z;
-            best = s > most ? i : best;
-            most = s > most ? s : most;
-        }
-        return best;
-    }
     const tl_half_edge *edges = tl_hull_edges(hull);
-    uint32_t first = tl_hull_vertex_edge(hull)[v], e = first;
+    uint32_t stride = hull->face_stride, first = tl_hull_vertex_edge(hull)[v], e = first, best = 0;
     float most = -2.0f;
     do {
-        float s = tl_dot(tl_hull_normal(hull, edges[e].face), d);
-        if (s > most) {
-            most = s;
-            best = edges[e].face;
-        }
+        uint32_t face = edges[e].face;
+        float s = n[face] * d.x + n[stride + face] * d.y + n[2u * stride + face] * d.z;
+        best = s > most ? face : best;
+        most = tl_max(s, most);
         e = edges[tl_hull_twin(e)].next;
     } while (e != first);
     return best;

@@ -208,16 +208,18 @@ static uint32_t cross_segments(const tl_feature *a, const tl_feature *b, talus_v
     return out->gap <= margin;
 }
 
-/* Two segments that run alike, within 3 degrees, meet in the two ends of what they share. */
+/* Two segments that run alike seen along the normal, within 2 degrees, meet in the two ends of what they share. */
 static uint32_t meet_segments(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, candidate *out) {
     talus_vec3 u = tl_sub(a->point[1], a->point[0]), w = tl_sub(b->point[1], b->point[0]);
-    float uu = tl_length2(u), ww = tl_length2(w);
-    if (!(tl_length2(tl_cross(u, w)) <= 0.0025f * uu * ww) || !(uu > 0.0f)) {
+    talus_vec3 flat = tl_mad(u, -tl_dot(u, n), n);
+    float uu = tl_length2(flat), across = tl_dot(tl_cross(u, w), n), along = tl_dot(flat, w);
+    if (!(across * across <= 0.0012f * along * along) || !(uu > 0.0f)) {
         return 0;
     }
     float t[2] = {0.0f, 1.0f};
     uint32_t id[2] = {tl_point_id(TL_ID_VERTEX_A, a->vertex[0], 0), tl_point_id(TL_ID_VERTEX_A, a->vertex[1], 0)};
-    float s0 = tl_dot(u, tl_sub(b->point[0], a->point[0])) / uu, s1 = tl_dot(u, tl_sub(b->point[1], a->point[0])) / uu;
+    float s0 = tl_dot(flat, tl_sub(b->point[0], a->point[0])) / uu;
+    float s1 = tl_dot(flat, tl_sub(b->point[1], a->point[0])) / uu;
     uint32_t first = s0 <= s1 ? 0u : 1u;
     float low = tl_min(s0, s1), high = tl_max(s0, s1);
     if (low > t[0]) {
@@ -407,8 +409,11 @@ static uint32_t meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, flo
             count = clip_point(ref, inc, a_face, n, margin, tolerance, c);
         }
     } else if (a->count == 2 && b->count == 2) {
+        candidate own;
         count = meet_segments(a, b, n, margin, c);
-        count = count > 0 ? count : cross_segments(a, b, n, margin, c);
+        if (cross_segments(a, b, n, margin, &own)) {
+            count = add_point(&own, tolerance, c, count);
+        }
     }
     return count > TL_MANIFOLD_POINTS ? reduce(c, count, n, tolerance) : count;
 }
