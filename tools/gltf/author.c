@@ -140,8 +140,8 @@ author_part author_hull(author *a, const gltf_double3 *points, uint32_t count) {
     }
     const char *comma = a->mesh_count == 0 ? "" : ",";
     unsigned long number = a->mesh_count;
-    gltf_text_add(&a->views, "%s{\"buffer\":0,\"byteOffset\":%lu,\"byteLength\":%lu}", comma, (unsigned long)start,
-                  (unsigned long)(a->bytes.size - start));
+    gltf_text_add(&a->views, "%s{\"buffer\":0,\"byteOffset\":%lu,\"byteLength\":%lu,\"target\":34962}", comma,
+                  (unsigned long)start, (unsigned long)(a->bytes.size - start));
     gltf_text_add(&a->accessors,
                   "%s{\"bufferView\":%lu,\"componentType\":5126,\"type\":\"VEC3\",\"count\":%lu,"
                   "\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]}",

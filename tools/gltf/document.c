@@ -1,6 +1,5 @@
 #include "gltf/document.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -381,7 +381,9 @@ static int run_scene(const run_options *options, const gltf_scene *scene) {
 }
 
 int tool_run(int count, char **arguments) {
+    static char name[] = "talus: run"; /* what getopt's messages begin with */
     run_options options;
+    arguments[0] = name;
     memset(&options, 0, sizeof options);
     options.steps = UINT64_MAX;
     options.build.isa = TALUS_ISA_BEST;

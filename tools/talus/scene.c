@@ -38,7 +38,9 @@ int tool_scene(int count, char **arguments) {
                                             {"output", required_argument, NULL, 'o'},
                                             {"help", no_argument, NULL, 'h'},
                                             {NULL, 0, NULL, 0}};
+    static char title[] = "talus: scene"; /* what getopt's messages begin with */
     const char *path = "-";
+    arguments[0] = title;
     for (int option; (option = getopt_long(count, arguments, "lo:", options, NULL)) != -1;) {
         if (option == 'l') {
             print_list();

@@ -114,7 +114,7 @@ static void add_dominoes(author *a, gltf_double3 middle, uint32_t count, double 
 static void make_dominoes(author *a) {
     int material = author_material(a, 0.5, 0, NULL);
     parts_ground(a, 20, material);
-    add_dominoes(a, gltf_d3(0, 0, 0), 300, 1.2, 0.9, material);
+    add_dominoes(a, gltf_d3(0, 0, 0), 200, 1.2, 0.9, material);
 }
 
 static author_part mixed_part(author *a, parts_random *random, uint32_t i) {
@@ -215,7 +215,7 @@ typedef struct scene_maker {
 static const scene_info infos[SCENES] = {
     {"bridge", "48 hinged planks between two posts, loaded with boxes"},
     {"chain", "a chain with a ball 400 times as heavy as a link, released level, and a hanging one"},
-    {"dominoes", "300 stones in a spiral; the first one falls"},
+    {"dominoes", "200 stones in a spiral; the first one falls"},
     {"masses", "columns of five boxes, the top one up to 1000 times as heavy"},
     {"pile", "400 rocks (convex hulls) dropped into a bin"},
     {"pyramid", "210 boxes as a wall that should stay as it is"},
@@ -228,9 +228,9 @@ static const scene_info infos[SCENES] = {
 };
 
 static const scene_maker makers[SCENES] = {
-    {make_bridge, 600},   {make_chain, 600},   {make_dominoes, 900}, {make_masses, 600},
-    {make_pile, 500},     {make_pyramid, 300}, {make_ragdolls, 400}, {make_shapes, 400},
-    {make_showcase, 900}, {make_stack, 600},   {make_tower, 400},    {make_wheel, 400},
+    {make_bridge, 600},   {make_chain, 600},   {make_dominoes, 1000}, {make_masses, 600},
+    {make_pile, 500},     {make_pyramid, 300}, {make_ragdolls, 400},  {make_shapes, 400},
+    {make_showcase, 900}, {make_stack, 600},   {make_tower, 400},     {make_wheel, 400},
 };
 
 const scene_info *scenes_list(size_t *count) {
