@@ -95,6 +95,7 @@ talus_status talus_body_create(talus_world *world, const talus_body_def *def, ta
     memset(&tl_body_frame(h)[i], 0, sizeof(tl_row8));
     memset(&tl_body_velocity(h)[i], 0, sizeof(tl_row8));
     memset(&tl_body_force(h)[i], 0, sizeof(tl_row8));
+    memset(&tl_body_momentum(h)[i], 0, sizeof(tl_row8));
     memset(&tl_body_quiets(h)[i], 0, sizeof(tl_body_quiet));
     tl_row_set_pose(&tl_body_pose(h)[i], &pose);
     tl_body_previous(h)[i] = tl_body_pose(h)[i];
@@ -218,6 +219,7 @@ talus_status talus_body_set_pose(talus_world *world, talus_body body, const talu
     talus_pose place = tl_pose_mul(&origin, &frame);
     place.rotation = tl_quat_normalize(place.rotation);
     tl_row_set_pose(&tl_body_pose(h)[i], &place);
+    memset(&tl_body_momentum(h)[i], 0, sizeof(tl_row8));
     tl_body_previous(h)[i] = tl_body_pose(h)[i];
     tl_contacts_refresh(h, i);
     for (uint32_t s = tl_bodies(h)[i].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
@@ -278,6 +280,7 @@ talus_status talus_body_set_velocity(talus_world *world, talus_body body, talus_
     if (type == TALUS_STATIC) {
         return TALUS_BAD_ARGUMENT;
     }
+    memset(&tl_body_momentum(h)[i], 0, sizeof(tl_row8));
     tl_row_set6(&tl_body_velocity(h)[i], linear, angular);
     if (type == TALUS_KINEMATIC) {
         note_kinematic(h, i);
@@ -358,6 +361,7 @@ static talus_status add_impulse(talus_world *world, talus_body body, talus_vec3 
     if (!tl_is_finite3(linear) || !tl_is_finite3(spin)) {
         return TALUS_NOT_FINITE;
     }
+    memset(&tl_body_momentum(h)[i], 0, sizeof(tl_row8));
     tl_row_set6(v, linear, spin);
     return TALUS_OK;
 }

@@ -61,6 +61,7 @@ void tl_body_take_mass(talus_world *world, uint32_t body, const talus_mass *mass
     talus_vec3 old = tl_row_xyz(&tl_body_pose(h)[body]);
     float values[3] = {0.0f, 0.0f, 0.0f};
     tl_body_mass(h)[body] = *mass;
+    memset(&tl_body_momentum(h)[body], 0, sizeof(tl_row8));
     if (type == TALUS_DYNAMIC) {
         tl_principal_axes(&mass->inertia, &frame.rotation, values);
         in->inverse_mass = mass->mass > 0.0f ? 1.0f / mass->mass : 0.0f;

@@ -4,9 +4,6 @@
 #include "stage/stages.h"
 #include "talus/world.h"
 
-/* The share of a joint's error that a sub-step takes back. */
-#define JOINT_SHARE 0.4f
-
 /* A stopwatch on the caller's clock; does nothing without one. */
 typedef struct watch {
     const talus_clock *clock;
@@ -49,7 +46,6 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->rows = 0;
     step->any_locks = 0;
     h->settings.substep = step->sub;
-    step->joint_rate = JOINT_SHARE * step->inverse_sub;
     tl_events_begin(h);
     h->counters.islands_slept = h->counters.islands_woken = 0;
 }
@@ -59,11 +55,8 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
     k->velocity(step, 0, step->rows);
     watch_lap(w, TALUS_STAGE_VELOCITY);
-    if (joints) {
-        k->prepare_joints(step, 0, joints);
-    }
     if (first) {
-        k->warm_joints(step, 0, joints);
+        k->begin_joints(step, 0, joints);
         k->warm_contacts(step, 0, contacts);
     }
     for (uint32_t i = 0; i < passes; i++) {
@@ -76,7 +69,9 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     watch_lap(w, TALUS_STAGE_SOLVE);
     k->position(step, 0, step->rows);
     watch_lap(w, TALUS_STAGE_POSITION);
-    if (contacts) {
+    k->turn_joints(step, 0, joints);
+    if (contacts || joints) {
+        k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
         k->push(step, 0, step->rows);
     }

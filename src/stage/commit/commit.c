@@ -41,6 +41,26 @@ static void fall_exactly(const tl_step *step, uint32_t row, tl_row8 *pose) {
     }
 }
 
+/* The angular momentum to go on from, and the spin in v that it means at the new pose; empty without a gyroscopic term. */
+static tl_row8 kept_momentum(const tl_header *h, uint32_t body, uint32_t row, const tl_row8 *pose, tl_row8 *v) {
+    const tl_row8 *rf = &tl_row_frame(h)[row], *m = &tl_row_momentum(h)[row], *rv = &tl_row_velocity(h)[row];
+    tl_row8 kept;
+    memset(&kept, 0, sizeof kept);
+    if (!(rf->f[7] > 0.0f)) {
+        return kept;
+    }
+    talus_quat frame = {rf->f[0], rf->f[1], rf->f[2], rf->f[3]}, q = tl_row_quat(pose);
+    talus_vec3 gain = tl_sub(tl_row_345(rv), tl_row_345(m));
+    gain = tl_v(gain.x / rf->f[4], gain.y / rf->f[5], gain.z / rf->f[6]);
+    talus_vec3 l = tl_add(tl_row_xyz(m), tl_rotate(frame, gain)), own = tl_rotate_back(q, l);
+    const float *s = tl_body_inertias(h)[body].s;
+    talus_vec3 w = tl_rotate(q, tl_v(own.x * s[0] * s[0], own.y * s[1] * s[1], own.z * s[2] * s[2]));
+    tl_row_set6(v, tl_row_xyz(v), w);
+    tl_row_set6(&kept, l, tl_v(0.0f, 0.0f, 0.0f));
+    kept.f[7] = 1.0f;
+    return kept;
+}
+
 void tl_stage_commit(tl_step *step) {
     tl_header *h = step->h;
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
@@ -52,6 +72,7 @@ void tl_stage_commit(tl_step *step) {
         talus_vec3 u = tl_mul(tl_row_345(rv), tl_v(rf->f[4], rf->f[5], rf->f[6]));
         memset(&v, 0, sizeof v);
         tl_row_set6(&v, tl_row_xyz(rv), tl_rotate(frame, u));
+        tl_row8 momentum = kept_momentum(h, body, row, &next, &v);
         next.f[7] = 0.0f;
         fall_exactly(step, row, &next);
         tl_body_previous(h)[body] = *pose;
@@ -59,8 +80,10 @@ void tl_stage_commit(tl_step *step) {
             tl_body_motion(h)[body] += motion_between(pose, &next, tl_body_inertias(h)[body].reach);
             *pose = next;
             *velocity = v;
+            tl_body_momentum(h)[body] = momentum;
         } else { /* numbers beyond what floats hold: the body stops where it was */
             memset(velocity, 0, sizeof *velocity);
+            memset(&tl_body_momentum(h)[body], 0, sizeof(tl_row8));
         }
         if (tl_bodies(h)[body].flags & TL_BODY_FORCE) {
             memset(&tl_body_force(h)[body], 0, sizeof(tl_row8));

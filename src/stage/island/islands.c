@@ -87,6 +87,7 @@ static void sleep_islands(tl_header *h, float time) {
             bodies[root].sleep_next = b;
         }
         memset(&tl_body_velocity(h)[b], 0, sizeof(tl_row8));
+        memset(&tl_body_momentum(h)[b], 0, sizeof(tl_row8));
         tl_body_previous(h)[b] = tl_body_pose(h)[b];
         tl_body_clear_awake(h, b);
         slept++;

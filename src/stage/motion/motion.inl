@@ -81,22 +81,43 @@ static void velocity(const tl_step *step, uint32_t first, uint32_t last) {
     }
 }
 
-/* Turns the principal axes q by Euler's equations for a sub-step from the own angular velocity w; gives the new one. */
-static inline v8 euler_turn(q8 *q, v8 w, v8 s2, tl_f8 h) {
-    v8 l = v8_of(tl_f8_div(w.x, s2.x), tl_f8_div(w.y, s2.y), tl_f8_div(w.z, s2.z));
-    v8 mean = w;
+/* Turns the principal axes q by Euler's equations for a sub-step, with the angular momentum l in the world. */
+static inline void euler_turn(q8 *q, v8 l, v8 s2, tl_f8 h) {
+    v8 own = q8_rotate_back(*q, l), mean = v8_mul(s2, own);
     for (int i = 0; i < 3; i++) {
         q8 half = exp_half(turn_of(mean, tl_f8_mul(tl_f8_set1(0.5f), h)));
-        mean = v8_mul(s2, q8_rotate_back(half, l));
+        mean = v8_mul(s2, q8_rotate_back(half, own));
     }
-    q8 whole = exp_half(turn_of(mean, h));
-    *q = q8_mul(*q, whole);
-    return v8_mul(s2, q8_rotate_back(whole, l));
+    *q = q8_normalize(q8_mul(*q, exp_half(turn_of(mean, h))));
+}
+
+/* The gyroscopic lanes of a group: takes what the impulses changed into the momentum, turns q and finds the new u. */
+static void gyroscope(const tl_step *step, uint32_t row, tl_m8 gyro, q8 frame, v8 s, q8 *q, q8 turned, tl_f8 v[8]) {
+    tl_row8 *momenta = tl_row_momentum(step->h) + row, *befores = tl_row_before(step->h) + row;
+    tl_f8 m[8], b[8], one = tl_f8_set1(1.0f);
+    load_eight(momenta, m);
+    load_eight(befores, b);
+    v8 safe = v8_select(gyro, s, v8_of(one, one, one)), s2 = v8_mul(safe, safe);
+    v8 u = v8_of(v[3], v[4], v[5]), gain = v8_sub(u, v8_of(m[3], m[4], m[5]));
+    gain = v8_of(tl_f8_div(gain.x, safe.x), tl_f8_div(gain.y, safe.y), tl_f8_div(gain.z, safe.z));
+    v8 l = v8_add(v8_of(m[0], m[1], m[2]), q8_rotate(frame, gain));
+    q8 free_turn = *q;
+    euler_turn(&free_turn, l, s2, tl_f8_set1(step->sub));
+    v8 w = q8_rotate(free_turn, v8_mul(s2, q8_rotate_back(free_turn, l))), back = q8_rotate_back(frame, w);
+    v8 next = v8_of(tl_f8_div(back.x, safe.x), tl_f8_div(back.y, safe.y), tl_f8_div(back.z, safe.z));
+    next = v8_select(gyro, next, u);
+    v8 before = v8_add(v8_of(b[3], b[4], b[5]), v8_sub(next, u));
+    b[3] = before.x, b[4] = before.y, b[5] = before.z;
+    v[3] = next.x, v[4] = next.y, v[5] = next.z;
+    m[0] = l.x, m[1] = l.y, m[2] = l.z, m[3] = next.x, m[4] = next.y, m[5] = next.z;
+    store_eight(befores, b);
+    store_eight(momenta, m);
+    q->x = tl_f8_select(gyro, free_turn.x, turned.x), q->y = tl_f8_select(gyro, free_turn.y, turned.y);
+    q->z = tl_f8_select(gyro, free_turn.z, turned.z), q->w = tl_f8_select(gyro, free_turn.w, turned.w);
 }
 
 static void position(const tl_step *step, uint32_t first, uint32_t last) {
-    tl_row8 *velocities = tl_row_velocity(step->h), *befores = tl_row_before(step->h);
-    tl_row8 *moves = tl_row_moved(step->h), *poses = tl_row_pose(step->h);
+    tl_row8 *velocities = tl_row_velocity(step->h), *moves = tl_row_moved(step->h), *poses = tl_row_pose(step->h);
     const tl_row8 *frames = tl_row_frame(step->h);
     tl_f8 h = tl_f8_set1(step->sub), zero = tl_f8_zero();
     for (uint32_t i = first; i < last; i += TL_LANES) {
@@ -115,29 +136,12 @@ static void position(const tl_step *step, uint32_t first, uint32_t last) {
         q8 q = q8_of(p[3], p[4], p[5], p[6]), frame = q8_of(f[0], f[1], f[2], f[3]);
         v8 s = v8_of(f[4], f[5], f[6]), u = v8_of(v[3], v[4], v[5]);
         v8 w = q8_rotate(frame, v8_mul(s, u));
-        q8 turned = q8_mul(exp_half(turn_of(w, h)), q);
+        q8 turned = q8_normalize(q8_mul(exp_half(turn_of(w, h)), q));
         tl_m8 gyro = tl_f8_gt(f[7], zero);
         if (tl_m8_any(gyro)) {
-            v8 one = v8_of(tl_f8_set1(1.0f), tl_f8_set1(1.0f), tl_f8_set1(1.0f));
-            v8 safe = v8_select(gyro, s, one);
-            q8 free_turn = q;
-            v8 own = euler_turn(&free_turn, q8_rotate_back(q, w), v8_mul(safe, safe), h);
-            v8 back = q8_rotate_back(frame, q8_rotate(free_turn, own));
-            v8 next = v8_of(tl_f8_div(back.x, safe.x), tl_f8_div(back.y, safe.y), tl_f8_div(back.z, safe.z));
-            tl_f8 b[8];
-            load_eight(befores + i, b);
-            v8 before = v8_add(v8_of(b[3], b[4], b[5]), v8_sub(next, u));
-            b[3] = tl_f8_select(gyro, before.x, b[3]);
-            b[4] = tl_f8_select(gyro, before.y, b[4]);
-            b[5] = tl_f8_select(gyro, before.z, b[5]);
-            store_eight(befores + i, b);
-            v[3] = tl_f8_select(gyro, next.x, u.x);
-            v[4] = tl_f8_select(gyro, next.y, u.y);
-            v[5] = tl_f8_select(gyro, next.z, u.z);
-            turned = q8_of(tl_f8_select(gyro, free_turn.x, turned.x), tl_f8_select(gyro, free_turn.y, turned.y),
-                           tl_f8_select(gyro, free_turn.z, turned.z), tl_f8_select(gyro, free_turn.w, turned.w));
+            gyroscope(step, i, gyro, frame, s, &q, turned, v);
+            turned = q;
         }
-        turned = q8_normalize(turned);
         p[3] = turned.x, p[4] = turned.y, p[5] = turned.z, p[6] = turned.w;
         store_eight(velocities + i, v);
         store_eight(moves + i, m);

@@ -72,7 +72,18 @@ static void fill_row(tl_step *step, uint32_t body, uint32_t row) {
     }
     tl_row8 *rv = &tl_row_velocity(h)[row], *rf = &tl_row_frame(h)[row], *ra = &tl_row_force(h)[row];
     tl_row_pose(h)[row] = *pose;
-    tl_row_set6(rv, linear, whiten(frame, s, w));
+    talus_vec3 u = whiten(frame, s, w), momentum = tl_v(0.0f, 0.0f, 0.0f);
+    if (gyro > 0.0f) { /* u = s R^T L; the momentum is kept from step to step, for w changes as the body turns */
+        const tl_row8 *kept = &tl_body_momentum(h)[body];
+        momentum = tl_rotate(frame, tl_v(u.x / s.x, u.y / s.y, u.z / s.z));
+        if (kept->f[7] > 0.0f) {
+            momentum = tl_row_xyz(kept);
+            u = tl_mul(s, tl_rotate_back(frame, momentum));
+        }
+    }
+    memset(&tl_row_momentum(h)[row], 0, sizeof(tl_row8));
+    tl_row_set6(&tl_row_momentum(h)[row], momentum, u);
+    tl_row_set6(rv, linear, u);
     rv->f[6] = dynamic ? in->inverse_mass : 0.0f;
     rv->f[7] = turns ? 1.0f : 0.0f;
     if ((locks & 7u) == 7u) {

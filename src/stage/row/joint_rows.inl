@@ -1,5 +1,8 @@
-/* Joint rows: eight joints of one kind at a time become Jacobians, errors and effective masses. They are made anew in every
- * sub-step from the bodies' present poses, so that a joint does not stretch while its bodies turn.
+/* Joint rows: eight joints of one kind at a time become Jacobians, errors and effective masses. They are made anew after every
+ * change of the poses, so that a joint neither stretches nor gains energy while its bodies turn: half of the impulse that
+ * bends a body's path acts before it moves, along the old rows, and half after, along the new ones, as in RATTLE
+ * (Andersen, "RATTLE: a velocity version of SHAKE", J. Comput. Phys. 52, 1983). The first half is foreseen by the curve of
+ * the anchors' paths, w x (w x r) h / 2.
  *
  * Angles are read off the relative quaternion: the twist about an axis is 2 atan2(q_axis, w), the swing of that axis
  * 2 atan2(|q_others|, |(q_axis, w)|) (Dobrowolski, "Swing-twist decomposition in Clifford algebra", 2015). */
@@ -9,6 +12,7 @@ typedef struct joint_bodies {
     v8 xa, xb;
     k8 ka, kb;
     tl_f8 ma, mb, ta, tb;
+    v8 curve;      /* m/s: of anchor b against anchor a */
     v8 pa, pb;     /* the frames' origins in the world */
     v8 a[3], b[3]; /* the frames' axes in the world */
     q8 turn;       /* of frame b in frame a, w >= 0 */
@@ -18,6 +22,13 @@ static inline void axes_of(q8 q, v8 out[3]) {
     v8 one = v8_of(tl_f8_set1(1.0f), tl_f8_set1(1.0f), tl_f8_set1(1.0f));
     k8 k = k8_of(q, one);
     out[0] = k.x, out[1] = k.y, out[2] = k.z;
+}
+
+/* w x (w x r), fading out where a body turns so far in a sub-step that the curve is no guide any more. */
+static inline v8 bend(v8 w, v8 r, tl_f8 h) {
+    tl_f8 turn = tl_f8_mul(tl_f8_mul(h, h), v8_dot(w, w));
+    tl_f8 trust = tl_f8_max(tl_f8_sub(tl_f8_set1(1.0f), tl_f8_mul(tl_f8_set1(4.0f), turn)), tl_f8_zero());
+    return v8_scale(v8_cross(w, v8_cross(w, r)), trust);
 }
 
 static void load_joint_bodies(const tl_step *step, const tl_joint_group *g, joint_bodies *c) {
@@ -34,12 +45,17 @@ static void load_joint_bodies(const tl_step *step, const tl_joint_group *g, join
     c->ka = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
     tl_f8_load_rows(frames, g->b, r);
     c->kb = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
+    v8 ra = q8_rotate(qa, v8_load(g->pa[0])), rb = q8_rotate(qb, v8_load(g->pb[0]));
+    c->pa = v8_add(c->xa, ra);
+    c->pb = v8_add(c->xb, rb);
     tl_f8_load_rows(velocities, g->a, r);
+    v8 wa = k8_mul_t(&c->ka, v8_of(r[3], r[4], r[5]));
     c->ma = r[6], c->ta = r[7];
     tl_f8_load_rows(velocities, g->b, r);
+    v8 wb = k8_mul_t(&c->kb, v8_of(r[3], r[4], r[5]));
     c->mb = r[6], c->tb = r[7];
-    c->pa = v8_add(c->xa, q8_rotate(qa, v8_load(g->pa[0])));
-    c->pb = v8_add(c->xb, q8_rotate(qb, v8_load(g->pb[0])));
+    tl_f8 h = tl_f8_set1(step->sub);
+    c->curve = v8_scale(v8_sub(bend(wb, rb, h), bend(wa, ra, h)), tl_f8_mul(tl_f8_set1(0.5f), h));
     q8 fa = q8_mul(qa, q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3])));
     q8 fb = q8_mul(qb, q8_of(tl_f8_load(g->qb[0]), tl_f8_load(g->qb[1]), tl_f8_load(g->qb[2]), tl_f8_load(g->qb[3])));
     axes_of(fa, c->a);
@@ -85,7 +101,7 @@ static void angular_row(const joint_bodies *c, uint32_t type, uint32_t free_axis
 static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t code, uint32_t free_axis) {
     uint32_t type = code % TL_ROW_TYPES;
     v8 d = v8_sub(c->pb, c->pa), n, ja, jb;
-    tl_f8 error, mass;
+    tl_f8 error, mass, curve = tl_f8_zero();
     if (is_linear_row(code)) {
         if (type == TL_ROW_DISTANCE) {
             error = tl_f8_sqrt(v8_dot(d, d));
@@ -98,6 +114,7 @@ static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t co
         ja = k8_mul(&c->ka, v8_cross(v8_sub(c->pb, c->xa), n));
         jb = k8_mul(&c->kb, v8_cross(v8_sub(c->pb, c->xb), n));
         mass = tl_f8_add(c->ma, c->mb);
+        curve = v8_dot(n, c->curve);
     } else {
         angular_row(c, type, free_axis, &n, &error);
         ja = k8_mul(&c->ka, n);
@@ -109,6 +126,7 @@ static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t co
     v8_store(row->ja[0], ja);
     v8_store(row->jb[0], jb);
     tl_f8_store(row->error, error);
+    tl_f8_store(row->curve, curve);
     tl_f8_store(row->mass, inverse_or_zero(mass));
     tl_f8 below = tl_f8_sub(error, tl_f8_load(row->lower)), above = tl_f8_sub(tl_f8_load(row->upper), error);
     tl_f8_store(row->at_lower, tl_f8_and_mask(tl_f8_le(below, above), tl_f8_set1(1.0f)));
@@ -150,17 +168,14 @@ static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl
     }
 }
 
-static void prepare_joints(const tl_step *step, uint32_t first, uint32_t last) {
-    for (uint32_t i = first; i < last; i++) {
-        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
-        tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
-        joint_bodies c;
-        load_joint_bodies(step, g, &c);
-        for (uint32_t k = 0; k < g->rows; k++) {
-            make_joint_row(&c, &rows[k], g->code[k], g->free_axis);
-        }
-        factor_equalities(&c, g, rows);
+static void make_joint_rows(const tl_step *step, tl_joint_group *g) {
+    tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+    joint_bodies c;
+    load_joint_bodies(step, g, &c);
+    for (uint32_t k = 0; k < g->rows; k++) {
+        make_joint_row(&c, &rows[k], g->code[k], g->free_axis);
     }
+    factor_equalities(&c, g, rows);
 }
 
 /* Impulses back to the joints, with the mean force and torque on b. */

@@ -1,5 +1,8 @@
 /* Joints solved eight at a time: drives, then limits, each row by projected Gauss-Seidel, then all equalities of a joint at
- * once by their factored matrix. */
+ * once by their factored matrix. Errors are taken back as displacements, as overlap is. */
+
+/* The share of an error that a sub-step takes back. */
+#define JOINT_SHARE 0.4f
 
 static inline tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int linear) {
     v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
@@ -35,16 +38,21 @@ static void solve_drive(const tl_step *step, pair_velocity *p, tl_joint_row *row
     joint_apply(p, row, linear, tl_f8_sub(now, old));
 }
 
+/* How far inside the nearer side of a range a joint is, and which side that is: 1 for the lower, -1 for the upper one. */
+static inline tl_f8 range_gap(const tl_joint_row *row, tl_f8 *sign) {
+    tl_m8 low = tl_f8_gt(tl_f8_load(row->at_lower), tl_f8_zero());
+    tl_f8 error = tl_f8_load(row->error);
+    *sign = tl_f8_select(low, tl_f8_set1(1.0f), tl_f8_set1(-1.0f));
+    return tl_f8_select(low, tl_f8_sub(error, tl_f8_load(row->lower)), tl_f8_sub(tl_f8_load(row->upper), error));
+}
+
 /* The nearer side of a range, hard or a spring, pushing one way only. */
-static void solve_range(const tl_step *step, pair_velocity *p, tl_joint_row *row, int linear, int with_bias) {
+static void solve_range(const tl_step *step, pair_velocity *p, tl_joint_row *row, int linear) {
     tl_f8 h = tl_f8_set1(step->sub), one = tl_f8_set1(1.0f), zero = tl_f8_zero(), mass = tl_f8_load(row->mass);
-    tl_m8 low = tl_f8_gt(tl_f8_load(row->at_lower), zero);
-    tl_f8 sign = tl_f8_select(low, one, tl_f8_set1(-1.0f)), error = tl_f8_load(row->error);
-    tl_f8 gap = tl_f8_select(low, tl_f8_sub(error, tl_f8_load(row->lower)), tl_f8_sub(tl_f8_load(row->upper), error));
+    tl_f8 sign, gap = range_gap(row, &sign);
     tl_f8 old = tl_f8_mul(sign, tl_f8_load(row->impulse)), speed = tl_f8_mul(sign, joint_speed(p, row, linear));
     tl_m8 apart = tl_f8_gt(gap, zero);
-    tl_f8 bias = tl_f8_mul(gap, tl_f8_set1(step->inverse_sub));
-    bias = tl_f8_select(apart, bias, with_bias ? tl_f8_mul(gap, tl_f8_set1(step->joint_rate)) : zero);
+    tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, tl_f8_set1(step->inverse_sub)));
     tl_f8 hard = tl_f8_max(tl_f8_sub(old, tl_f8_mul(mass, tl_f8_add(speed, bias))), zero);
     tl_f8 k = tl_f8_load(row->stiffness), c = tl_f8_load(row->damping), s = tl_f8_mad(c, h, k);
     tl_f8 give = inverse_or_zero(tl_f8_mul(h, s));
@@ -57,13 +65,10 @@ static void solve_range(const tl_step *step, pair_velocity *p, tl_joint_row *row
     joint_apply(p, row, linear, tl_f8_mul(sign, tl_f8_sub(now, old)));
 }
 
-static void solve_equalities(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
-                             int with_bias) {
-    tl_f8 x[6], rate = tl_f8_set1(with_bias ? step->joint_rate : 0.0f);
+/* x becomes the impulses that take the equalities' speeds -x to nothing. */
+static inline void solve_factored(const tl_joint_group *g, tl_f8 x[6]) {
     uint32_t n = g->fixed;
     for (uint32_t i = 0; i < n; i++) {
-        tl_f8 error = tl_f8_sub(tl_f8_load(rows[i].error), tl_f8_load(rows[i].lower));
-        x[i] = tl_f8_neg(tl_f8_mad(joint_speed(p, &rows[i], is_linear_row(g->code[i])), rate, error));
         for (uint32_t j = 0; j < i; j++) {
             x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->factor[i * (i + 1u) / 2u + j]), x[j]));
         }
@@ -74,13 +79,56 @@ static void solve_equalities(const tl_step *step, const tl_joint_group *g, tl_jo
             x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->factor[j * (j + 1u) / 2u + i]), x[j]));
         }
     }
-    for (uint32_t i = 0; i < n; i++) {
+}
+
+static void solve_equalities(const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p, int before_move) {
+    tl_f8 x[6];
+    for (uint32_t i = 0; i < g->fixed; i++) {
+        tl_f8 speed = joint_speed(p, &rows[i], is_linear_row(g->code[i]));
+        x[i] = tl_f8_neg(before_move ? tl_f8_add(speed, tl_f8_load(rows[i].curve)) : speed);
+    }
+    solve_factored(g, x);
+    for (uint32_t i = 0; i < g->fixed; i++) {
         tl_f8_store(rows[i].impulse, tl_f8_add(tl_f8_load(rows[i].impulse), x[i]));
         joint_apply(p, &rows[i], is_linear_row(g->code[i]), x[i]);
     }
 }
 
-static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int with_bias) {
+/* Displacements that take back a share of the errors and of what is beyond hard limits. */
+static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
+    float *pushes = tl_row_push(step->h)->f;
+    tl_f8 share = tl_f8_set1(JOINT_SHARE), zero = tl_f8_zero();
+    for (uint32_t i = first; i < last; i++) {
+        const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        pair_velocity p;
+        tl_f8 x[6];
+        load_pair(pushes, g->a, g->b, &p);
+        for (uint32_t k = g->rows; k-- > g->fixed;) {
+            if (g->code[k] / TL_ROW_TYPES != TL_ROW_RANGE) {
+                continue;
+            }
+            int linear = is_linear_row(g->code[k]);
+            tl_f8 sign, gap = range_gap(&rows[k], &sign);
+            tl_m8 soft = tl_f8_gt(tl_f8_add(tl_f8_load(rows[k].stiffness), tl_f8_load(rows[k].damping)), zero);
+            gap = tl_f8_add(gap, tl_f8_mul(sign, joint_speed(&p, &rows[k], linear)));
+            tl_f8 push = tl_f8_mul(tl_f8_load(rows[k].mass), tl_f8_mul(share, tl_f8_max(tl_f8_neg(gap), zero)));
+            joint_apply(&p, &rows[k], linear, tl_f8_mul(sign, tl_f8_select(soft, zero, push)));
+        }
+        for (uint32_t k = 0; k < g->fixed; k++) {
+            tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
+            error = tl_f8_add(error, joint_speed(&p, &rows[k], is_linear_row(g->code[k])));
+            x[k] = tl_f8_neg(tl_f8_mul(share, error));
+        }
+        solve_factored(g, x);
+        for (uint32_t k = 0; k < g->fixed; k++) {
+            joint_apply(&p, &rows[k], is_linear_row(g->code[k]), x[k]);
+        }
+        store_pair(pushes, g->a, g->b, &p);
+    }
+}
+
+static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int before_move) {
     for (uint32_t i = first; i < last; i++) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
@@ -91,10 +139,10 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int w
             if (g->code[k] / TL_ROW_TYPES == TL_ROW_DRIVE) {
                 solve_drive(step, &p, &rows[k], linear);
             } else {
-                solve_range(step, &p, &rows[k], linear, with_bias);
+                solve_range(step, &p, &rows[k], linear);
             }
         }
-        solve_equalities(step, g, rows, &p, with_bias);
+        solve_equalities(g, rows, &p, before_move);
         store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
 }
@@ -102,15 +150,39 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int w
 static void solve_joints(const tl_step *step, uint32_t first, uint32_t last) { run_joints(step, first, last, 1); }
 static void relax_joints(const tl_step *step, uint32_t first, uint32_t last) { run_joints(step, first, last, 0); }
 
-static void warm_joints(const tl_step *step, uint32_t first, uint32_t last) {
+static void apply_all(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, float sign) {
+    for (uint32_t k = 0; k < g->rows; k++) {
+        tl_f8 impulse = tl_f8_mul(tl_f8_set1(sign), tl_f8_load(rows[k].impulse));
+        joint_apply(p, &rows[k], is_linear_row(g->code[k]), impulse);
+    }
+}
+
+/* Rows when the step begins, and the impulses that the last step ended with. */
+static void begin_joints(const tl_step *step, uint32_t first, uint32_t last) {
+    float *velocities = tl_row_velocity(step->h)->f;
     for (uint32_t i = first; i < last; i++) {
-        const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
-        for (uint32_t k = 0; k < g->rows; k++) {
-            joint_apply(&p, &rows[k], is_linear_row(g->code[k]), tl_f8_load(rows[k].impulse));
-        }
-        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        make_joint_rows(step, g);
+        load_pair(velocities, g->a, g->b, &p);
+        apply_all(g, rows, &p, 1.0f);
+        store_pair(velocities, g->a, g->b, &p);
+    }
+}
+
+/* Rows after the poses changed. The next sub-step starts from the present impulses along the new rows and not the old ones:
+ * the velocity that they are reckoned from is moved by the difference. */
+static void turn_joints(const tl_step *step, uint32_t first, uint32_t last) {
+    float *befores = tl_row_before(step->h)->f;
+    for (uint32_t i = first; i < last; i++) {
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        pair_velocity p;
+        load_pair(befores, g->a, g->b, &p);
+        apply_all(g, rows, &p, 1.0f);
+        make_joint_rows(step, g);
+        apply_all(g, rows, &p, -1.0f);
+        store_pair(befores, g->a, g->b, &p);
     }
 }

@@ -13,6 +13,7 @@
     /* bodies */                                                         \
     X(body_pose, tl_row8, BODY, COMMIT, STATE, 4)                        \
     X(body_velocity, tl_row8, BODY, COMMIT, STATE, 4)                    \
+    X(body_momentum, tl_row8, BODY, COMMIT, STATE, 4)                    \
     X(body_previous, tl_row8, BODY, COMMIT, STATE, 4)                    \
     X(body_inertias, tl_body_inertia, BODY, COMMANDS, STATE, 4)           \
     X(body_frame, tl_row8, BODY, COMMANDS, STATE, 4)                     \
@@ -55,6 +56,7 @@
     X(row_velocity, tl_row8, ROW, VELOCITY, STEP, 4)                     \
     X(row_before, tl_row8, ROW, VELOCITY, STEP, 4)                       \
     X(row_moved, tl_row8, ROW, POSITION, STEP, 4)                        \
+    X(row_momentum, tl_row8, ROW, POSITION, STEP, 4)                     \
     X(row_push, tl_row8, ROW, POSITION, STEP, 4)                         \
     X(row_pose, tl_row8, ROW, POSITION, STEP, 4)                         \
     X(row_frame, tl_row8, ROW, ROWS, STEP, 4)                            \

@@ -18,10 +18,13 @@ typedef struct tl_row8 {
 /* Members of a row8, by column:
  *   body_pose, row_pose      centre of mass x y z (m), rotation of the principal axes x y z w, 0
  *   body_velocity            v x y z (m/s), w x y z (rad/s), 0, 0
+ *   body_momentum            angular momentum x y z (kg m^2/s) where the gyroscopic term counts, 0 0 0 0, 1 if it holds
  *   body_frame               the mass frame in the body's frame: centre x y z, rotation x y z w, 0
  *   body_force               force x y z (N), torque x y z (N m), 0, 0
  *   row_velocity, row_before v x y z, u x y z, inverse mass (1/kg), 1 if impulses turn it and 0 if not
  *   row_moved                since the step began: way of the centre x y z, sum of h u x y z, 0, 0
+ *   row_push                 displacements that part what overlaps, as row_velocity
+ *   row_momentum             angular momentum x y z (kg m^2/s), u that goes with it, 0, 0
  *   row_frame                rotation of K's frame x y z w, s x y z, 1 if the gyroscopic term counts
  *   row_force                acceleration x y z, whitened angular acceleration x y z, damping factors of v and of u
  *   shape_place              the shape in the mass frame: x y z, rotation x y z w, largest reach from the centre (m)
@@ -61,6 +64,7 @@ typedef struct tl_joint_row {
     float n[3][TL_LANES];                   /* linear direction or angular axis */
     float ja[3][TL_LANES], jb[3][TL_LANES]; /* whitened */
     float error[TL_LANES];                  /* m or rad */
+    float curve[TL_LANES];                  /* m/s: half of what the bodies' turning adds to the error's rate in a sub-step */
     float lower[TL_LANES], upper[TL_LANES]; /* of the position, or target twice for a drive */
     float stiffness[TL_LANES], damping[TL_LANES];
     float speed[TL_LANES];                  /* target of a drive */
