@@ -1,0 +1,95 @@
+#!/bin/sh
+# Builds the golden program by every compiler and level at hand, runs it over every instruction set it has, and compares
+# with tests/golden/hashes.txt. BUILD=dir FAST=1 golden.sh; FAST: only this machine's own kind of processor.
+# MATRIX: lines of "name|compiler|flags|runner", in place of the built-in ones.
+set -u
+BUILD=${BUILD:-build}
+JOBS=${JOBS:-$(nproc 2>/dev/null || echo 2)}
+want=tests/golden/hashes.txt
+passed=0
+failed=0
+skipped=0
+
+compared=0
+
+# The scenes in which a list of hashes differs from what is wanted.
+differing() { diff "$want" "$1" | sed -n 's/^> \([^ ]*\) .*/\1/p' | tr '\n' ' '; }
+row() { printf '  %-18s %-8s %s\n' "$1" "$2" "$3"; }
+
+# one NAME COMPILER FLAGS RUNNER
+one() {
+    if ! command -v "${2%% *}" >/dev/null 2>&1 || { [ -n "$4" ] && ! command -v "${4%% *}" >/dev/null 2>&1; }; then
+        row "$1" - "skipped: no $2${4:+ or ${4%% *}}"
+        skipped=$((skipped + 1))
+        return
+    fi
+    dir=$BUILD/golden-$1
+    case $1 in wasm*) exe=.wasm ;; *) exe= ;; esac
+    case $4 in '') link= ;; node*) link= ;; *) link=-static ;; esac
+    mkdir -p "$dir"
+    if ! make --no-print-directory -j"$JOBS" CC="$2" OPT="$3" CFLAGS= LDFLAGS="$link" EXE="$exe" BUILD="$dir" "$dir/golden$exe" \
+        >"$dir/build.log" 2>&1; then
+        row "$1" - "DOES NOT BUILD"
+        tail -20 "$dir/build.log"
+        failed=$((failed + 1))
+        return
+    fi
+    isas=$($4 "$dir/golden$exe" --isas)
+    if [ -z "$isas" ]; then
+        row "$1" - "DOES NOT RUN"
+        failed=$((failed + 1))
+    fi
+    for isa in $isas; do
+        $4 "$dir/golden$exe" "$isa" >"$dir/$isa.txt" 2>"$dir/$isa.err"
+        if [ $compared -eq 0 ]; then
+            compared=1
+            if ! cmp -s "$dir/$isa.txt" "$want"; then
+                # What is kept is of another state of the sources: whether all builds agree is still worth knowing.
+                echo "  not the hashes kept: $(differing "$dir/$isa.txt")(make golden-update takes these)"
+                want=$dir/$isa.txt
+                failed=$((failed + 1))
+            fi
+        fi
+        if cmp -s "$dir/$isa.txt" "$want"; then
+            row "$1" "$isa" same
+            passed=$((passed + 1))
+        else
+            row "$1" "$isa" "DIFFERS: $(differing "$dir/$isa.txt")$(tail -1 "$dir/$isa.err")"
+            failed=$((failed + 1))
+        fi
+    done
+}
+
+native() {
+    for cc in gcc clang; do
+        for level in 0 2 3; do
+            echo "$cc-O$level|$cc|-O$level|"
+        done
+    done
+}
+others() {
+    for level in 0 2 3; do
+        echo "aarch64-gcc-O$level|aarch64-linux-gnu-gcc|-O$level|qemu-aarch64"
+    done
+    echo "aarch64-clang-O2|clang --target=aarch64-linux-gnu|-O2|qemu-aarch64"
+    # whole-program optimisation sees through the borders of files
+    echo "gcc-O3-lto|gcc|-O3 -flto -ffat-lto-objects|"
+    # -march=native brings FMA, which must not be used
+    echo "gcc-native|gcc|-O3 -march=native|"
+    echo "clang-native|clang|-O3 -march=native|"
+    for level in 0 3; do
+        echo "i686-O$level|i686-linux-gnu-gcc|-O$level -msse2 -mfpmath=sse|qemu-i386"
+    done
+    for level in 0 2 3; do
+        echo "wasm-O$level|clang --target=wasm32-wasi|-O$level|node --no-warnings tools/ci/wasi.js"
+    done
+}
+
+lines=${MATRIX:-$(native; [ -n "${FAST:-}" ] || others)}
+while IFS='|' read -r name compiler flags runner; do
+    one "$name" "$compiler" "$flags" "$runner" </dev/null
+done <<END
+$lines
+END
+echo "golden: $passed same, $failed not, $skipped skipped"
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
