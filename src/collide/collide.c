@@ -48,6 +48,10 @@ static void collide_ordered(const tl_convex *a, const tl_convex *b, const talus_
     }
     tl_core_init(&ca, a, NULL);
     tl_core_init(&cb, b, b_in_a);
+    if (a->geometry.type == TALUS_BOX && b->geometry.type == TALUS_BOX) {
+        tl_collide_boxes(&ca, &cb, margin, cache, out);
+        return;
+    }
     if (a->geometry.type >= TALUS_BOX) {
         if (b->geometry.type >= TALUS_BOX && tl_collide_polyhedra(&ca, &cb, margin, cache, out)) {
             return;

@@ -11,6 +11,10 @@
 /* The sine of 10 degrees: closer to the plane across the normal than this an edge stands for a shape. */
 #define TL_EDGE_SIN 0.17f
 
+/* The side planes stand this far outside of the face, of the smaller feature's extent: faces that fit one another
+ * exactly keep their corners while they jitter. */
+#define TL_SIDE_SLACK 5e-4f
+
 typedef struct tl_feature {
     uint32_t count;                      /* 1: a point, 2: a segment, more: a convex polygon */
     talus_vec3 normal;                   /* outward unit normal of a polygon */

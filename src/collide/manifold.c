@@ -2,24 +2,11 @@
  * or edge is clipped against its sides (Sutherland & Hodgman, Reentrant Polygon Clipping, 1974), and of many points
  * four are kept: one of the deepest, then those that span the most area. Point numbers come from vertices and edges
  * alone, so that they outlive a change of roles. Metres. */
-#include "collide/feature.h"
-
-#include <string.h>
+#include "collide/points.h"
 
 #define MAX_CLIP (2u * TL_FEATURE_POINTS)
-/* The side planes stand this far outside of the face, of the smaller feature's extent: faces that fit one another
- * exactly keep their corners while they jitter. */
-#define SIDE_SLACK 5e-4f
-/* A point this much less deep must be that times further out to be kept instead. */
-#define GAP_WEIGHT 4.0f
 #define FROM_REFERENCE 0x8000u
 #define RIM_ID 0x7ffeu /* the number of the lowest point of a disc */
-
-typedef struct candidate {
-    talus_vec3 p; /* midway */
-    float gap;
-    uint32_t id;
-} candidate;
 
 typedef struct clip_buffer {
     talus_vec3 p[MAX_CLIP];
@@ -28,9 +15,16 @@ typedef struct clip_buffer {
     uint32_t count;
 } clip_buffer;
 
+static float largest(talus_vec3 d) { return tl_max(tl_max(tl_abs(d.x), tl_abs(d.y)), tl_abs(d.z)); }
+
+/* The length of a segment, the width of a polygon, roughly. */
 static float extent(const tl_feature *f) {
-    talus_vec3 d = tl_sub(f->point[f->count / 2u], f->point[0]);
-    return tl_max(tl_max(tl_abs(d.x), tl_abs(d.y)), tl_abs(d.z));
+    if (f->count == 2) {
+        return largest(tl_sub(f->point[1], f->point[0]));
+    }
+    talus_vec3 u = tl_sub(f->point[f->count / 3u], f->point[0]), w = tl_sub(f->point[2u * f->count / 3u], f->point[0]);
+    float length = largest(w);
+    return length > 0.0f ? largest(tl_cross(u, w)) / length : 0.0f;
 }
 
 /* Inside of a side of the reference is where dot(side, x) + offset >= 0. */
@@ -92,7 +86,7 @@ static uint32_t corner_id(const tl_feature *ref, const tl_feature *inc, int ref_
 
 /* How far x is in front of the reference's plane along the normal. */
 static void measure(const tl_feature *ref, int ref_is_a, talus_vec3 n, float inverse, float margin, talus_vec3 x,
-                    uint32_t id, candidate *c, uint32_t *count) {
+                    uint32_t id, tl_candidate *c, uint32_t *count) {
     float gap = tl_dot(ref->normal, tl_sub(x, ref->point[0])) * inverse;
     if (gap <= margin) {
         c[*count].gap = gap;
@@ -103,11 +97,11 @@ static void measure(const tl_feature *ref, int ref_is_a, talus_vec3 n, float inv
 }
 
 static uint32_t clip_polygon(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
-                             candidate *out) {
+                             tl_candidate *out) {
     clip_buffer buffer[2];
     clip_buffer *from = &buffer[0], *to = &buffer[1];
     talus_vec3 outward = ref_is_a ? n : tl_neg(n);
-    float slack = SIDE_SLACK * tl_min(extent(ref), extent(inc));
+    float slack = TL_SIDE_SLACK * tl_min(extent(ref), extent(inc));
     from->count = inc->count;
     for (uint32_t k = 0; k < inc->count; ++k) {
         from->p[k] = inc->point[k];
@@ -134,9 +128,9 @@ static uint32_t clip_polygon(const tl_feature *ref, const tl_feature *inc, int r
 }
 
 static uint32_t clip_segment(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
-                             candidate *out) {
+                             tl_candidate *out) {
     talus_vec3 outward = ref_is_a ? n : tl_neg(n);
-    float slack = SIDE_SLACK * tl_min(extent(ref), extent(inc)), low = 0.0f, high = 1.0f;
+    float slack = TL_SIDE_SLACK * tl_min(extent(ref), extent(inc)), low = 0.0f, high = 1.0f;
     uint32_t kind = ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A;
     uint32_t low_id = tl_point_id(kind, inc->vertex[0], 0), high_id = tl_point_id(kind, inc->vertex[1], 0);
     for (uint32_t i = 0; i < ref->count; ++i) {
@@ -174,7 +168,7 @@ static uint32_t clip_segment(const tl_feature *ref, const tl_feature *inc, int r
 
 /* A point over the reference. */
 static uint32_t clip_point(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
-                           float slack, candidate *out) {
+                           float slack, tl_candidate *out) {
     talus_vec3 outward = ref_is_a ? n : tl_neg(n);
     for (uint32_t i = 0; i < ref->count; ++i) {
         talus_vec3 side;
@@ -190,7 +184,8 @@ static uint32_t clip_point(const tl_feature *ref, const tl_feature *inc, int ref
 }
 
 /* Where two segments cross, seen along the normal. */
-static uint32_t cross_segments(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, candidate *out) {
+static uint32_t cross_segments(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin,
+                               tl_candidate *out) {
     talus_vec3 u = tl_sub(a->point[1], a->point[0]), w = tl_sub(b->point[1], b->point[0]);
     talus_vec3 across = tl_cross(u, n), d = tl_sub(b->point[0], a->point[0]), other = tl_cross(w, n);
     float uw = tl_dot(across, w), wu = tl_dot(other, u);
@@ -198,7 +193,7 @@ static uint32_t cross_segments(const tl_feature *a, const tl_feature *b, talus_v
         return 0;
     }
     float t = -tl_dot(across, d) / uw, s = tl_dot(other, d) / wu;
-    if (!(t >= -SIDE_SLACK && t <= 1.0f + SIDE_SLACK && s >= -SIDE_SLACK && s <= 1.0f + SIDE_SLACK)) {
+    if (!(t >= -TL_SIDE_SLACK && t <= 1.0f + TL_SIDE_SLACK && s >= -TL_SIDE_SLACK && s <= 1.0f + TL_SIDE_SLACK)) {
         return 0;
     }
     talus_vec3 p = tl_mad(a->point[0], tl_clamp(s, 0.0f, 1.0f), u), q = tl_mad(b->point[0], tl_clamp(t, 0.0f, 1.0f), w);
@@ -209,7 +204,7 @@ static uint32_t cross_segments(const tl_feature *a, const tl_feature *b, talus_v
 }
 
 /* Two segments that run alike seen along the normal, within 2 degrees, meet in the two ends of what they share. */
-static uint32_t meet_segments(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, candidate *out) {
+static uint32_t meet_segments(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, tl_candidate *out) {
     talus_vec3 u = tl_sub(a->point[1], a->point[0]), w = tl_sub(b->point[1], b->point[0]);
     talus_vec3 flat = tl_mad(u, -tl_dot(u, n), n);
     float uu = tl_length2(flat), across = tl_dot(tl_cross(u, w), n), along = tl_dot(flat, w);
@@ -230,7 +225,7 @@ static uint32_t meet_segments(const tl_feature *a, const tl_feature *b, talus_ve
         t[1] = high;
         id[1] = tl_point_id(TL_ID_VERTEX_B, b->vertex[1u - first], 0);
     }
-    if (!(t[1] - t[0] > SIDE_SLACK)) {
+    if (!(t[1] - t[0] > TL_SIDE_SLACK)) {
         return 0;
     }
     uint32_t count = 0;
@@ -249,83 +244,6 @@ static uint32_t meet_segments(const tl_feature *a, const tl_feature *b, talus_ve
     return count;
 }
 
-static uint32_t best_area(const candidate *c, uint32_t count, const uint32_t *chosen, uint32_t kept, talus_vec3 n,
-                          float least, float scale) {
-    uint32_t best = count;
-    float most = scale * scale * 1e-6f;
-    for (uint32_t i = 0; i < count; ++i) {
-        talus_vec3 p0 = c[chosen[0]].p, d = tl_sub(c[i].p, p0);
-        float area = 0.0f;
-        if (kept == 2) {
-            area = tl_abs(tl_dot(n, tl_cross(tl_sub(c[chosen[1]].p, p0), d)));
-        } else {
-            /* outside of the triangle by the side that it is furthest across */
-            talus_vec3 p1 = c[chosen[1]].p, p2 = c[chosen[2]].p;
-            float whole = tl_dot(n, tl_cross(tl_sub(p1, p0), tl_sub(p2, p0))), turn = whole >= 0.0f ? -1.0f : 1.0f;
-            float s0 = turn * tl_dot(n, tl_cross(tl_sub(p1, p0), d));
-            float s1 = turn * tl_dot(n, tl_cross(tl_sub(p2, p1), tl_sub(c[i].p, p1)));
-            float s2 = turn * tl_dot(n, tl_cross(tl_sub(p0, p2), tl_sub(c[i].p, p2)));
-            area = tl_max(s0, tl_max(s1, s2));
-        }
-        area -= GAP_WEIGHT * (c[i].gap - least) * scale;
-        if (area > most) {
-            most = area;
-            best = i;
-        }
-    }
-    return best;
-}
-
-/* Four of many candidates into the front of the array. */
-static uint32_t reduce(candidate *c, uint32_t count, talus_vec3 n, float tolerance) {
-    uint32_t deepest = 0, chosen[4] = {0, 0, 0, 0}, kept = 1;
-    float reach2 = 0.0f;
-    for (uint32_t i = 1; i < count; ++i) {
-        deepest = c[i].gap < c[deepest].gap ? i : deepest;
-        reach2 = tl_max(reach2, tl_length2(tl_sub(c[i].p, c[0].p)));
-    }
-    float least = c[deepest].gap, reach = sqrtf(reach2);
-    /* of points about as deep the one of the lowest number, so that the choice does not flicker */
-    chosen[0] = deepest;
-    for (uint32_t i = 0; i < count; ++i) {
-        chosen[0] = c[i].gap <= least + 1e-3f * reach && c[i].id < c[chosen[0]].id ? i : chosen[0];
-    }
-    float most = 0.0f;
-    for (uint32_t i = 0; i < count; ++i) {
-        float score = tl_length(tl_sub(c[i].p, c[chosen[0]].p)) - GAP_WEIGHT * (c[i].gap - least);
-        if (score > most) {
-            most = score;
-            chosen[1] = i;
-            kept = 2;
-        }
-    }
-    while (kept >= 2 && kept < 4) {
-        uint32_t next = best_area(c, count, chosen, kept, n, least, most);
-        if (next == count) {
-            break;
-        }
-        chosen[kept++] = next;
-    }
-    float found = c[chosen[0]].gap;
-    uint32_t nearest = 0;
-    float near2 = 3e38f;
-    for (uint32_t i = 0; i < kept; ++i) {
-        found = tl_min(found, c[chosen[i]].gap);
-        float d2 = tl_length2(tl_sub(c[chosen[i]].p, c[deepest].p));
-        nearest = d2 < near2 ? i : nearest;
-        near2 = tl_min(near2, d2);
-    }
-    if (found > least + tolerance) {
-        chosen[kept < 4 ? kept++ : nearest] = deepest;
-    }
-    candidate four[4];
-    for (uint32_t i = 0; i < kept; ++i) {
-        four[i] = c[chosen[i]];
-    }
-    memcpy(c, four, kept * sizeof four[0]);
-    return kept;
-}
-
 static uint32_t touch_id(const tl_feature *a, const tl_feature *b) {
     if (a->count == 2 && b->count == 2) {
         return tl_point_id(TL_ID_EDGES, a->edge[0], b->edge[0]);
@@ -333,29 +251,10 @@ static uint32_t touch_id(const tl_feature *a, const tl_feature *b) {
     return tl_point_id(TL_ID_POINTS, a->count == 1 ? a->vertex[0] : 0x7fffu, b->count == 1 ? b->vertex[0] : 0x7fffu);
 }
 
-/* One more point, where the others are not as deep. */
-static uint32_t add_point(const candidate *own, float tolerance, candidate *c, uint32_t count) {
-    uint32_t near = count;
-    float near2 = 3e38f;
-    for (uint32_t i = 0; i < count; ++i) {
-        if (c[i].gap <= own->gap + tolerance) {
-            return count;
-        }
-        float d2 = tl_length2(tl_sub(c[i].p, own->p));
-        near = d2 < near2 ? i : near;
-        near2 = tl_min(near2, d2);
-    }
-    if (count < TL_MANIFOLD_POINTS) {
-        near = count++;
-    }
-    c[near] = *own;
-    return count;
-}
-
 /* The lowest point of a disc, which the polygon that stands for the disc leaves out. */
 static uint32_t add_rim(const tl_core *core, const tl_feature *ref, int ref_is_a, talus_vec3 n, float margin,
-                        float tolerance, candidate *c, uint32_t count) {
-    candidate own;
+                        float tolerance, tl_candidate *c, uint32_t count) {
+    tl_candidate own;
     tl_feature point;
     uint32_t index = 0;
     point.count = 1;
@@ -364,25 +263,7 @@ static uint32_t add_rim(const tl_core *core, const tl_feature *ref, int ref_is_a
     if (clip_point(ref, &point, ref_is_a, n, margin, tolerance, &own) == 0) {
         return count;
     }
-    return add_point(&own, tolerance, c, count);
-}
-
-/* No point is nearer than the shapes are; beside the face, within the slack, it may have seemed so. */
-static void write(const candidate *c, uint32_t count, const tl_touch *touch, tl_manifold *out) {
-    out->normal = touch->normal;
-    out->count = count;
-    for (uint32_t i = 0; i < count; ++i) {
-        out->point[i].position = c[i].p;
-        out->point[i].separation = tl_max(c[i].gap, touch->separation);
-        uint32_t id = c[i].id;
-        for (uint32_t k = 0; k < i; ++k) {
-            if (out->point[k].id == id) {
-                id += 0x4001u;
-                k = UINT32_MAX;
-            }
-        }
-        out->point[i].id = id;
-    }
+    return tl_candidates_add(&own, tolerance, c, count);
 }
 
 static int face_is_reference(const tl_feature *a, const tl_feature *b, talus_vec3 n) {
@@ -390,7 +271,7 @@ static int face_is_reference(const tl_feature *a, const tl_feature *b, talus_vec
 }
 
 static uint32_t meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, float tolerance,
-                     candidate *c) {
+                     tl_candidate *c) {
     int a_face = a->count >= 3, b_face = b->count >= 3;
     uint32_t count = 0;
     if (a_face && b_face) {
@@ -409,31 +290,23 @@ static uint32_t meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, flo
             count = clip_point(ref, inc, a_face, n, margin, tolerance, c);
         }
     } else if (a->count == 2 && b->count == 2) {
-        candidate own;
+        tl_candidate own;
         count = meet_segments(a, b, n, margin, c);
         if (cross_segments(a, b, n, margin, &own)) {
-            count = add_point(&own, tolerance, c, count);
+            count = tl_candidates_add(&own, tolerance, c, count);
         }
     }
-    return count > TL_MANIFOLD_POINTS ? reduce(c, count, n, tolerance) : count;
+    return count > TL_MANIFOLD_POINTS ? tl_candidates_reduce(c, count, n, tolerance) : count;
 }
 
 void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch *touch, float margin, float tolerance,
                        tl_manifold *out) {
-    candidate c[MAX_CLIP];
-    write(c, meet(a, b, touch->normal, margin, tolerance, c), touch, out);
-}
-
-float tl_manifold_least(const tl_manifold *m) {
-    float least = m->point[0].separation;
-    for (uint32_t i = 1; i < m->count; ++i) {
-        least = tl_min(least, m->point[i].separation);
-    }
-    return least;
+    tl_candidate c[MAX_CLIP];
+    tl_candidates_write(c, meet(a, b, touch->normal, margin, tolerance, c), touch, out);
 }
 
 void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out) {
-    candidate c[MAX_CLIP];
+    tl_candidate c[MAX_CLIP];
     tl_feature fa, fb;
     talus_vec3 n = touch->normal, back = tl_neg(n);
     float tolerance = tl_touch_tolerance(a, b);
@@ -450,10 +323,10 @@ void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch,
             count = add_rim(inc, a_is_ref ? &fa : &fb, a_is_ref, n, margin, tolerance, c, count);
         }
     }
-    candidate own;
+    tl_candidate own;
     own.p = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
     own.gap = touch->separation;
     own.id = touch_id(&fa, &fb);
-    count = add_point(&own, tolerance, c, count);
-    write(c, count, touch, out);
+    count = tl_candidates_add(&own, tolerance, c, count);
+    tl_candidates_write(c, count, touch, out);
 }
