@@ -40,8 +40,8 @@ static void make_masses(author *a) {
 static void make_chain(author *a) {
     int material = author_material(a, 0.5, 0, NULL);
     parts_ground(a, 30, material);
-    parts_chain(a, gltf_d3(-4, 20, 0), gltf_d3(0.4, 0, 0), 32, 0.5, 1000, material);  /* released level */
-    parts_chain(a, gltf_d3(4, 20, 6), gltf_d3(0, -0.4, 0), 32, 0.5, 10000, material); /* hanging */
+    parts_chain(a, gltf_d3(-4, 20, 0), gltf_d3(0.5, 0, 0), 24, 0.5, 800, material); /* released level */
+    parts_chain(a, gltf_d3(4, 20, 6), gltf_d3(0, -0.5, 0), 24, 0.5, 800, material); /* hanging */
 }
 
 static void make_bridge(author *a) {
@@ -91,8 +91,8 @@ static void make_tower(author *a) {
     int material = author_material(a, 0.6, 0, NULL);
     parts_ground(a, 20, material);
     parts_tower(a, gltf_d3(0, 0, 0), 18, 1.5, material);
-    author_add_body(a, author_sphere(a, 0.25), author_at(-12, 4, 0.1), material,
-                    "\"mass\":500,\"linearVelocity\":[14,3,0]");
+    author_add_body(a, author_sphere(a, 0.25), author_at(-12, 3, 0.1), material,
+                    "\"mass\":2000,\"linearVelocity\":[20,3,0]");
 }
 
 /* Stones along a spiral from the inside out; the first one starts to fall. */
@@ -182,17 +182,19 @@ static void make_wheel(author *a) {
 static void make_showcase(author *a) {
     parts_random random = {1};
     int material = author_material(a, 0.6, 0, NULL), springy = author_material(a, 0.4, 0.8, "maximum");
-    parts_ground(a, 40, material);
+    parts_ground(a, 100, material);
     parts_pyramid(a, gltf_d3(-10, 0, 4), gltf_d3(0, 0, 1), 10, 0.8, material);
-    parts_chain(a, gltf_d3(-16, 11, 4), gltf_d3(-0.5, 0.1, 0), 14, 1, 12000, material); /* a ball swings into it */
+    parts_chain(a, gltf_d3(-13, 10, 4), gltf_d3(-1, 0.2, 0), 7, 1, 3000, material); /* a ball swings into it */
     parts_tower(a, gltf_d3(2, 0, 9), 16, 1.5, material);
+    author_add_body(a, author_sphere(a, 0.25), author_at(2.1, 3, 25), material,
+                    "\"mass\":2000,\"linearVelocity\":[0,3,-20]");
     add_dominoes(a, gltf_d3(10, 0, 8), 130, 1, 0.9, material);
     parts_bridge(a, gltf_d3(-6, 4, -9), gltf_d3(6, 4, -9), 24, 2, material);
     for (int i = 0; i < 6; i++) {
         gltf_double4 turn = parts_rotation(&random);
         parts_ragdoll(a, gltf_d3(1.8 * i - 4.5, 6 + 0.8 * i, -9), turn, material);
     }
-    parts_walls(a, 12, -8, 2.8, 1, 4, material);
+    parts_walls(a, 12, -8, 2.8, 1, 6, material);
     add_wheel(a, gltf_d3(12, 2.1, -8), 1.5, 3, material);
     for (uint32_t i = 0; i < 150; i++) {
         gltf_double3 p = gltf_add3(parts_layer(i, 5, 2, 0.95, 4.5), gltf_d3(12, 0, -8));
@@ -214,7 +216,7 @@ typedef struct scene_maker {
 
 static const scene_info infos[SCENES] = {
     {"bridge", "48 hinged planks between two posts, loaded with boxes"},
-    {"chain", "a chain with a ball 400 times as heavy as a link, released level, and a hanging one"},
+    {"chain", "a chain with a ball 100 times as heavy as a link, released level, and a hanging one"},
     {"dominoes", "200 stones in a spiral; the first one falls"},
     {"masses", "columns of five boxes, the top one up to 1000 times as heavy"},
     {"pile", "400 rocks (convex hulls) dropped into a bin"},
