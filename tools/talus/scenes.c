@@ -89,7 +89,7 @@ static void make_pile(author *a) {
 
 static void make_tower(author *a) {
     int material = author_material(a, 0.6, 0, NULL);
-    parts_ground(a, 20, material);
+    parts_ground(a, 60, material);
     parts_tower(a, gltf_d3(0, 0, 0), 18, 1.5, material);
     author_add_body(a, author_sphere(a, 0.25), author_at(-12, 3, 0.1), material,
                     "\"mass\":2000,\"linearVelocity\":[20,3,0]");
