@@ -3,8 +3,6 @@
  * apart, and else bounds the search. Metres, in A's frame. */
 #include "collide/polyhedra.h"
 
-#define FACE_SLOTS ((TL_SAT_FACES + 7u) & ~7u)
-
 static void edge_features(const tl_poly *p, const tl_poly *q, uint32_t ep, uint32_t eq, talus_vec3 n, tl_feature *fp,
                           tl_feature *fq) {
     /* n looks from P to Q; a face that is all but square with it stands for the edge */
@@ -56,7 +54,7 @@ static void axis_manifold(const tl_poly *a, const tl_poly *b, const tl_axis *axi
 
 int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pair_cache *cache, tl_manifold *out) {
     tl_poly pa, pb;
-    float g_a[FACE_SLOTS], g_b[FACE_SLOTS];
+    tl_sat sat;
     tl_axis axis;
     if (!tl_poly_init(a, &pa) || !tl_poly_init(b, &pb)) {
         return 0;
@@ -71,11 +69,17 @@ int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pa
         tl_cache_keep_axis(cache, n);
         return 1;
     }
-    float tolerance = tl_touch_tolerance(a, b), bias = tolerance + 2e-5f * tl_abs(known);
-    float least = known - 3.0f * bias;
-    tl_sat_faces(&pa, &pb, least, margin, bias, &axis, g_a, g_b);
+    float tolerance = tl_touch_tolerance(a, b);
+    sat.a = &pa;
+    sat.b = &pb;
+    sat.bias = tolerance + 2e-5f * tl_abs(known);
+    sat.least = known - 3.0f * sat.bias;
+    sat.enough = margin;
+    sat.point[0] = tl_sub(vb, va);
+    sat.point_count = 1;
+    tl_sat_faces(&sat, &axis);
     if (axis.separation <= 0.0f) {
-        tl_sat_edges(&pa, &pb, margin, bias, g_a, g_b, least, &axis);
+        tl_sat_edges(&sat, &axis);
     }
     if (axis.kind != TL_AXIS_NONE) {
         n = axis.normal;

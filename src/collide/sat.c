@@ -5,6 +5,7 @@
 #include "collide/sat.h"
 
 #include "collide/gjk.h"
+#include "collide/lanes.h"
 
 #include <string.h>
 
@@ -14,6 +15,8 @@ static const tl_half_edge box_edges[24] = {{18, 0, 2, 0}, {8, 1, 4, 0},  {11, 2,
                                            {22, 1, 1, 0}, {1, 3, 4, 0},  {21, 4, 0, 0}, {4, 6, 5, 0},  {7, 5, 5, 0},
                                            {19, 7, 1, 0}, {12, 0, 0, 0}, {0, 4, 2, 0},  {5, 1, 2, 0},  {10, 5, 1, 0},
                                            {6, 2, 3, 0},  {9, 6, 0, 0},  {15, 3, 1, 0}, {3, 7, 3, 0}};
+
+static const uint16_t box_face_edge[6] = {16, 10, 0, 20, 8, 4};
 
 static void box_poly(const tl_core *core, tl_poly *poly) {
     static const float sign[3][8] = {{-1, 1, 0, 0, 0, 0, 0, 0}, {0, 0, -1, 1, 0, 0, 0, 0}, {0, 0, 0, 0, -1, 1, 1, 1}};
@@ -69,61 +72,98 @@ int tl_poly_init(const tl_core *core, tl_poly *poly) {
     return 1;
 }
 
-/* Q's placing in P's frame. */
+/* Q's placing in P's frame, and the known points as Q - P there. */
 typedef struct relative {
     talus_mat3 r;
     talus_vec3 t;
+    talus_vec3 point[TL_SAT_POINTS];
 } relative;
 
-static void query_faces(const tl_poly *p, const tl_poly *q, const relative *at, tl_axis_kind kind, float enough,
-                        float bias, float least, tl_axis *best, float *g) {
+static int is_ruled_out(const tl_sat *s, const relative *at, talus_vec3 n, float bar) {
+    for (uint32_t k = 0; k < s->point_count; ++k) {
+        if (tl_dot(n, at->point[k]) <= bar) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Tries one face of P. */
+static void try_face(tl_sat *s, const tl_poly *p, const tl_poly *q, relative *at, tl_axis_kind kind, uint32_t i,
+                     uint32_t *vertex, tl_axis *best) {
+    float bar = best->separation + (kind == best->kind ? 0.0f : kind == TL_AXIS_FACE_B ? s->bias : -s->bias);
+    talus_vec3 n = tl_v(p->nx[i], p->ny[i], p->nz[i]);
+    if (is_ruled_out(s, at, n, bar)) {
+        return;
+    }
+    talus_vec3 v = tl_core_support_local(q->core, tl_mat3_mul_t(&at->r, tl_neg(n)), vertex);
+    v = tl_add(tl_mat3_mul(&at->r, v), at->t);
+    float apart = tl_dot(n, v) - p->d[i];
+    if (s->point_count < TL_SAT_POINTS) {
+        /* any point of the face will do */
+        uint32_t e = p->core->kind == TL_CORE_BOX ? box_face_edge[i] : tl_hull_face_edge(p->core->hull)[i];
+        talus_vec3 w = tl_sub(v, tl_v(p->x[p->edges[e].origin], p->y[p->edges[e].origin], p->z[p->edges[e].origin]));
+        at->point[s->point_count] = w;
+        s->point[s->point_count++] = kind == TL_AXIS_FACE_A ? w : tl_neg(tl_mat3_mul(&s->b->core->r, w));
+    }
+    if (apart > bar) {
+        best->kind = kind;
+        best->separation = apart;
+        best->normal = n;
+        best->a = best->b = i;
+    }
+}
+
+static void query_faces(tl_sat *s, const tl_poly *p, const tl_poly *q, relative *at, tl_axis_kind kind, float *front,
+                        tl_axis *best) {
     talus_vec3 c = tl_add(tl_mat3_mul(&at->r, q->center), at->t);
-    uint32_t stride = p->face_stride;
-    for (uint32_t i = 0; i < stride; ++i) {
-        g[i] = p->nx[i] * c.x + p->ny[i] * c.y + p->nz[i] * c.z - p->d[i];
+    tl_f8 cx = tl_f8_set1(c.x), cy = tl_f8_set1(c.y), cz = tl_f8_set1(c.z), most = tl_f8_set1(-3e38f);
+    for (uint32_t i = 0; i < p->face_stride; i += 8u) {
+        tl_f8 g = tl_f8_add(tl_f8_add(tl_f8_mul(tl_f8_loadu(p->nx + i), cx), tl_f8_mul(tl_f8_loadu(p->ny + i), cy)),
+                            tl_f8_mul(tl_f8_loadu(p->nz + i), cz));
+        g = tl_f8_sub(g, tl_f8_loadu(p->d + i));
+        tl_f8_storeu(front + i, g);
+        most = tl_f8_max(g, most);
     }
     uint32_t vertex = 0;
-    for (uint32_t i = 0; i < p->face_count; ++i) {
-        float bar = best->kind == TL_AXIS_NONE ? least : best->separation;
-        bar += kind == best->kind ? 0.0f : bias;
-        if (!(g[i] - q->inner > bar)) {
-            continue;
-        }
-        talus_vec3 n = tl_v(p->nx[i], p->ny[i], p->nz[i]);
-        talus_vec3 d = tl_mat3_mul_t(&at->r, tl_neg(n));
-        talus_vec3 v = tl_core_support_local(q->core, d, &vertex);
-        float s = (tl_dot(n, at->t) - p->d[i]) - tl_dot(d, v);
-        if (s > bar) {
-            best->kind = kind;
-            best->separation = s;
-            best->normal = n;
-            best->a = i;
-            if (s > enough) {
+    float bias = kind == TL_AXIS_FACE_B ? s->bias : -s->bias;
+    for (uint32_t i = 0; i < p->face_stride; i += 8u) {
+        float bar = q->inner + best->separation + (kind == best->kind ? 0.0f : bias);
+        uint32_t bits = tl_m8_bits(tl_f8_gt(tl_f8_loadu(front + i), tl_f8_set1(bar)));
+        for (; bits != 0u; bits &= bits - 1u) {
+            uint32_t face = i + tl_low_bit(bits);
+            if (face >= p->face_count) {
+                break;
+            }
+            try_face(s, p, q, at, kind, face, &vertex, best);
+            if (best->separation > s->enough) {
                 return;
             }
         }
     }
 }
 
-void tl_sat_faces(const tl_poly *a, const tl_poly *b, float least, float enough, float bias, tl_axis *best, float *g_a,
-                  float *g_b) {
+void tl_sat_faces(tl_sat *s, tl_axis *best) {
+    const tl_core *b = s->b->core;
     relative at;
-    at.r = b->core->r;
-    at.t = b->core->t;
+    at.r = b->r;
+    at.t = b->t;
+    memcpy(at.point, s->point, sizeof at.point);
     best->kind = TL_AXIS_NONE;
-    best->separation = least;
+    best->separation = s->least;
     best->a = best->b = 0;
-    query_faces(a, b, &at, TL_AXIS_FACE_A, enough, -bias, least, best, g_a);
-    if (best->kind == TL_AXIS_FACE_A && best->separation > enough) {
+    query_faces(s, s->a, s->b, &at, TL_AXIS_FACE_A, s->front_a, best);
+    if (best->separation > s->enough) {
         return;
     }
-    at.t = tl_neg(tl_mat3_mul_t(&b->core->r, b->core->t));
-    at.r = tl_mat3_transpose(&b->core->r);
-    query_faces(b, a, &at, TL_AXIS_FACE_B, enough, bias, least, best, g_b);
+    at.t = tl_neg(tl_mat3_mul_t(&b->r, b->t));
+    at.r = tl_mat3_transpose(&b->r);
+    for (uint32_t k = 0; k < s->point_count; ++k) {
+        at.point[k] = tl_neg(tl_mat3_mul(&at.r, s->point[k]));
+    }
+    query_faces(s, s->b, s->a, &at, TL_AXIS_FACE_B, s->front_b, best);
     if (best->kind == TL_AXIS_FACE_B) {
-        best->b = best->a;
-        best->a = 0;
-        best->normal = tl_neg(tl_mat3_mul(&b->core->r, best->normal));
+        best->normal = tl_neg(tl_mat3_mul(&b->r, best->normal));
     }
 }
 
@@ -152,15 +192,36 @@ static int edge_reaches(const tl_poly *p, const tl_half_edge *e, talus_vec3 from
     return tl_length2(w) - t * t / tl_length2(along) >= bar * bar * 0.9999f;
 }
 
-static void list_edges(const tl_poly *p, talus_vec3 c, float bar, const float *g, edge_list *out) {
+/* Marks faces by what rules their normals out; an edge whose two faces share a mark is ruled out with all of its arc: a
+ * bound that both ends of the arc stay below, and that is not positive, holds for what lies between them. */
+static void mark_faces(const tl_sat *s, const tl_poly *p, const talus_vec3 *point, const float *front, float inner,
+                       float bar, int32_t *mark) {
+    tl_f8 behind = tl_f8_set1(tl_min(inner + bar, 0.0f)), limit = tl_f8_set1(bar);
+    uint32_t points = bar <= 0.0f ? s->point_count : 0u;
+    for (uint32_t i = 0; i < p->face_stride; i += 8u) {
+        tl_f8 nx = tl_f8_loadu(p->nx + i), ny = tl_f8_loadu(p->ny + i), nz = tl_f8_loadu(p->nz + i);
+        tl_m8 low = tl_f8_lt(tl_f8_loadu(front + i), behind);
+        tl_i8 m = tl_i8_bits_of_f8(tl_f8_and_mask(low, tl_f8_of_bits(tl_i8_set1(256))));
+        for (uint32_t k = 0; k < points; ++k) {
+            tl_f8 dot =
+                tl_f8_add(tl_f8_add(tl_f8_mul(nx, tl_f8_set1(point[k].x)), tl_f8_mul(ny, tl_f8_set1(point[k].y))),
+                          tl_f8_mul(nz, tl_f8_set1(point[k].z)));
+            tl_f8 bit = tl_f8_of_bits(tl_i8_set1((int32_t)(1u << k)));
+            m = tl_i8_or(m, tl_i8_bits_of_f8(tl_f8_and_mask(tl_f8_lt(dot, limit), bit)));
+        }
+        tl_i8_storeu(mark + i, m);
+    }
+}
+
+static void list_edges(const tl_poly *p, talus_vec3 c, float bar, const float *front, const int32_t *mark,
+                       edge_list *out) {
     uint32_t count = 0;
-    float front = bar >= 0.0f ? 0.0f : bar;
     for (uint32_t i = 0; i < p->half_edge_count; i += 2u) {
         const tl_half_edge *e = &p->edges[i];
-        float most = tl_max(g[e[0].face], g[e[1].face]);
-        if (most < front) {
+        if (mark[e[0].face] & mark[e[1].face]) {
             continue;
         }
+        float most = tl_max(front[e[0].face], front[e[1].face]);
         talus_vec3 from = poly_point(p, e[0].origin), along = tl_sub(poly_point(p, e[1].origin), from);
         if (most < bar && !edge_reaches(p, e, from, along, c, bar)) {
             continue;
@@ -233,36 +294,46 @@ static void try_pair(const tl_poly *a, const tl_poly *b, uint32_t ea, uint32_t e
     }
 }
 
-void tl_sat_edges(const tl_poly *a, const tl_poly *b, float enough, float bias, const float *g_a, const float *g_b,
-                  float least, tl_axis *best) {
+static void mark_pairs(const edge_list *la, uint32_t i, const edge_list *lb, int32_t *hit) {
+    float ex = la->ex[i], ey = la->ey[i], ez = la->ez[i], n1x = la->n1x[i], n1y = la->n1y[i], n1z = la->n1z[i];
+    float n2x = la->n2x[i], n2y = la->n2y[i], n2z = la->n2z[i];
+    for (uint32_t j = 0; j < lb->count; ++j) {
+        float b1 = lb->n1x[j] * ex + lb->n1y[j] * ey + lb->n1z[j] * ez;
+        float b2 = lb->n2x[j] * ex + lb->n2y[j] * ey + lb->n2z[j] * ez;
+        float a1 = n1x * lb->ex[j] + n1y * lb->ey[j] + n1z * lb->ez[j];
+        float a2 = n2x * lb->ex[j] + n2y * lb->ey[j] + n2z * lb->ez[j];
+        hit[j] = (b1 * b2 < 0.0f) & (a1 * a2 < 0.0f) & (b1 * a2 < 0.0f);
+    }
+}
+
+void tl_sat_edges(tl_sat *s, tl_axis *best) {
+    const tl_poly *a = s->a, *b = s->b;
     edge_list la, lb;
-    int32_t hit[TL_SAT_EDGES];
-    float bar = tl_max(best->kind == TL_AXIS_NONE ? least : best->separation, least);
-    talus_vec3 cb = tl_core_place(b->core, b->center);
-    list_edges(a, cb, b->inner + bar, g_a, &la);
+    int32_t hit[TL_SAT_EDGES], mark[TL_SAT_FACES];
+    talus_vec3 point[TL_SAT_POINTS];
+    float bar = best->separation;
+    mark_faces(s, a, s->point, s->front_a, b->inner, bar, mark);
+    list_edges(a, tl_core_place(b->core, b->center), b->inner + bar, s->front_a, mark, &la);
     if (la.count == 0) {
         return;
     }
+    for (uint32_t k = 0; k < s->point_count; ++k) {
+        point[k] = tl_neg(tl_mat3_mul_t(&b->core->r, s->point[k]));
+    }
+    mark_faces(s, b, point, s->front_b, a->inner, bar, mark);
     talus_vec3 ca = tl_mat3_mul_t(&b->core->r, tl_sub(a->center, b->core->t));
-    list_edges(b, ca, a->inner + bar, g_b, &lb);
+    list_edges(b, ca, a->inner + bar, s->front_b, mark, &lb);
     const talus_mat3 *r = &b->core->r;
     rotate_list(r, lb.n1x, lb.n1y, lb.n1z, lb.count);
     rotate_list(r, lb.n2x, lb.n2y, lb.n2z, lb.count);
     rotate_list(r, lb.ex, lb.ey, lb.ez, lb.count);
     for (uint32_t i = 0; i < la.count; ++i) {
-        float ex = la.ex[i], ey = la.ey[i], ez = la.ez[i], n1x = la.n1x[i], n1y = la.n1y[i], n1z = la.n1z[i];
-        float n2x = la.n2x[i], n2y = la.n2y[i], n2z = la.n2z[i];
-        for (uint32_t j = 0; j < lb.count; ++j) {
-            float b1 = lb.n1x[j] * ex + lb.n1y[j] * ey + lb.n1z[j] * ez;
-            float b2 = lb.n2x[j] * ex + lb.n2y[j] * ey + lb.n2z[j] * ez;
-            float a1 = n1x * lb.ex[j] + n1y * lb.ey[j] + n1z * lb.ez[j];
-            float a2 = n2x * lb.ex[j] + n2y * lb.ey[j] + n2z * lb.ez[j];
-            hit[j] = (b1 * b2 < 0.0f) & (a1 * a2 < 0.0f) & (b1 * a2 < 0.0f);
-        }
+        mark_pairs(&la, i, &lb, hit);
         for (uint32_t j = 0; j < lb.count; ++j) {
             if (hit[j]) {
-                try_pair(a, b, la.edge[i], lb.edge[j], tl_v(n1x + n2x, n1y + n2y, n1z + n2z), bias, best);
-                if (best->kind == TL_AXIS_EDGES && best->separation > enough) {
+                talus_vec3 between = tl_v(la.n1x[i] + la.n2x[i], la.n1y[i] + la.n2y[i], la.n1z[i] + la.n2z[i]);
+                try_pair(a, b, la.edge[i], lb.edge[j], between, s->bias, best);
+                if (best->kind == TL_AXIS_EDGES && best->separation > s->enough) {
                     return;
                 }
             }

@@ -34,15 +34,24 @@ typedef struct tl_axis {
     float separation;
 } tl_axis;
 
-/* The greatest separation over the faces of A, then of B, that is above `least`, a separation that some axis is known
- * to reach; B's face has to beat A's by `bias`. Kind NONE if there is none. g_a and g_b receive how far the other's
- * centre is in front of each face. Stops at the first axis that separates by more than `enough`. */
-void tl_sat_faces(const tl_poly *a, const tl_poly *b, float least, float enough, float bias, tl_axis *best, float *g_a,
-                  float *g_b);
+/* Points of B - A that are known: along a unit normal n the shapes are at most n.w apart. In A's frame. */
+#define TL_SAT_POINTS 8u
 
-/* The same over pairs of edges whose arcs on the Gauss maps cross, given the faces' best, which it has to beat by
- * `bias`. */
-void tl_sat_edges(const tl_poly *a, const tl_poly *b, float enough, float bias, const float *g_a, const float *g_b,
-                  float least, tl_axis *best);
+/* What one query knows of its shapes. */
+typedef struct tl_sat {
+    const tl_poly *a, *b;
+    float least;  /* some axis separates by at least this much; what does not is not looked at */
+    float enough; /* an axis that separates by more ends the search */
+    float bias;   /* by which a face of B has to beat one of A, and edges have to beat faces */
+    uint32_t point_count;
+    talus_vec3 point[TL_SAT_POINTS];
+    float front_a[TL_SAT_FACES], front_b[TL_SAT_FACES]; /* how far the other's centre is in front of each face */
+} tl_sat;
+
+/* The greatest separation over the faces of both. Kind NONE if none is above `least`. */
+void tl_sat_faces(tl_sat *s, tl_axis *best);
+
+/* The same over pairs of edges whose arcs on the Gauss maps cross, given the faces' best. */
+void tl_sat_edges(tl_sat *s, tl_axis *best);
 
 #endif

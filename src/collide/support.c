@@ -3,6 +3,8 @@
  * Environments, 4.3.4). Lengths in metres. */
 #include "collide/support.h"
 
+#include "collide/lanes.h"
+
 /* Hulls of more vertices than this are climbed, not scanned. */
 #define SCAN_LIMIT 64u
 
@@ -79,31 +81,26 @@ static uint32_t climb(const talus_hull *hull, talus_vec3 d, uint32_t v) {
     return v;
 }
 
+/* The lowest index among the best, which is what a plain scan would find. */
 static uint32_t scan(const talus_hull *hull, talus_vec3 d) {
     const float *x = tl_hull_x(hull), *y = tl_hull_y(hull), *z = tl_hull_z(hull);
-    float best[8];
-    int32_t at[8];
-    for (int k = 0; k < 8; ++k) {
-        best[k] = x[k] * d.x + y[k] * d.y + z[k] * d.z;
-        at[k] = k;
+    tl_f8 dot[SCAN_LIMIT / 8u], dx = tl_f8_set1(d.x), dy = tl_f8_set1(d.y), dz = tl_f8_set1(d.z);
+    uint32_t blocks = hull->vertex_stride / 8u;
+    tl_f8 best = tl_f8_set1(-3e38f);
+    for (uint32_t i = 0; i < blocks; ++i) {
+        dot[i] = tl_f8_add(tl_f8_add(tl_f8_mul(tl_f8_loadu(x + 8u * i), dx), tl_f8_mul(tl_f8_loadu(y + 8u * i), dy)),
+                           tl_f8_mul(tl_f8_loadu(z + 8u * i), dz));
+        best = tl_f8_max(dot[i], best);
     }
-    for (uint32_t i = 8; i < hull->vertex_stride; i += 8) {
-        for (int k = 0; k < 8; ++k) {
-            float s = x[i + (uint32_t)k] * d.x + y[i + (uint32_t)k] * d.y + z[i + (uint32_t)k] * d.z;
-            int32_t here = (int32_t)i + k;
-            at[k] = s > best[k] ? here : at[k];
-            best[k] = s > best[k] ? s : best[k];
+    best = tl_f8_set1(tl_lanes_max(best));
+    for (uint32_t i = 0; i < blocks; ++i) {
+        uint32_t bits = tl_m8_bits(tl_f8_ge(dot[i], best));
+        if (bits != 0u) {
+            uint32_t v = 8u * i + tl_low_bit(bits);
+            return v < hull->vertex_count ? v : hull->vertex_count - 1u;
         }
     }
-    /* the lowest index among the best, which is what a plain scan would find */
-    for (int k = 1; k < 8; ++k) {
-        if (best[k] > best[0] || (best[k] == best[0] && at[k] < at[0])) {
-            best[0] = best[k];
-            at[0] = at[k];
-        }
-    }
-    uint32_t v = (uint32_t)at[0];
-    return v < hull->vertex_count ? v : hull->vertex_count - 1u;
+    return 0;
 }
 
 uint32_t tl_hull_support(const talus_hull *hull, talus_vec3 direction, uint32_t start) {
