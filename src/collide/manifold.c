@@ -189,8 +189,8 @@ static uint32_t cross_segments(const tl_feature *a, const tl_feature *b, talus_v
     talus_vec3 u = tl_sub(a->point[1], a->point[0]), w = tl_sub(b->point[1], b->point[0]);
     talus_vec3 across = tl_cross(u, n), d = tl_sub(b->point[0], a->point[0]), other = tl_cross(w, n);
     float uw = tl_dot(across, w), wu = tl_dot(other, u);
-    if (uw == 0.0f || wu == 0.0f) {
-        return 0;
+    if (!(uw * uw > 1e-5f * tl_length2(u) * tl_length2(w)) || !(wu * wu > 1e-5f * tl_length2(u) * tl_length2(w))) {
+        return 0; /* parallel: they cross nowhere in particular */
     }
     float t = -tl_dot(across, d) / uw, s = tl_dot(other, d) / wu;
     if (!(t >= -TL_SIDE_SLACK && t <= 1.0f + TL_SIDE_SLACK && s >= -TL_SIDE_SLACK && s <= 1.0f + TL_SIDE_SLACK)) {

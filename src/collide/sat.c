@@ -79,23 +79,11 @@ typedef struct relative {
     talus_vec3 point[TL_SAT_POINTS];
 } relative;
 
-static int is_ruled_out(const tl_sat *s, const relative *at, talus_vec3 n, float bar) {
-    for (uint32_t k = 0; k < s->point_count; ++k) {
-        if (tl_dot(n, at->point[k]) <= bar) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
 /* Tries one face of P. */
 static void try_face(tl_sat *s, const tl_poly *p, const tl_poly *q, relative *at, tl_axis_kind kind, uint32_t i,
                      uint32_t *vertex, tl_axis *best) {
     float bar = best->separation + (kind == best->kind ? 0.0f : kind == TL_AXIS_FACE_B ? s->bias : -s->bias);
     talus_vec3 n = tl_v(p->nx[i], p->ny[i], p->nz[i]);
-    if (is_ruled_out(s, at, n, bar)) {
-        return;
-    }
     talus_vec3 v = tl_core_support_local(q->core, tl_mat3_mul_t(&at->r, tl_neg(n)), vertex);
     v = tl_add(tl_mat3_mul(&at->r, v), at->t);
     float apart = tl_dot(n, v) - p->d[i];
@@ -114,30 +102,43 @@ static void try_face(tl_sat *s, const tl_poly *p, const tl_poly *q, relative *at
     }
 }
 
+/* The faces of a block of eight whose bounds are all above the bar, as bits. */
+static uint32_t open_faces(const tl_poly *p, const relative *at, uint32_t points, uint32_t i, tl_f8 front, float inner,
+                           float bar) {
+    tl_f8 nx = tl_f8_loadu(p->nx + i), ny = tl_f8_loadu(p->ny + i), nz = tl_f8_loadu(p->nz + i);
+    tl_f8 bound = tl_f8_sub(front, tl_f8_set1(inner));
+    for (uint32_t k = 0; k < points; ++k) {
+        const talus_vec3 w = at->point[k];
+        tl_f8 dot = tl_f8_add(tl_f8_add(tl_f8_mul(nx, tl_f8_set1(w.x)), tl_f8_mul(ny, tl_f8_set1(w.y))),
+                              tl_f8_mul(nz, tl_f8_set1(w.z)));
+        bound = tl_f8_min(dot, bound);
+    }
+    return tl_m8_bits(tl_f8_gt(bound, tl_f8_set1(bar)));
+}
+
 static void query_faces(tl_sat *s, const tl_poly *p, const tl_poly *q, relative *at, tl_axis_kind kind, float *front,
                         tl_axis *best) {
     talus_vec3 c = tl_add(tl_mat3_mul(&at->r, q->center), at->t);
-    tl_f8 cx = tl_f8_set1(c.x), cy = tl_f8_set1(c.y), cz = tl_f8_set1(c.z), most = tl_f8_set1(-3e38f);
+    tl_f8 cx = tl_f8_set1(c.x), cy = tl_f8_set1(c.y), cz = tl_f8_set1(c.z);
+    uint32_t vertex = 0;
+    float bias = kind == TL_AXIS_FACE_B ? s->bias : -s->bias;
     for (uint32_t i = 0; i < p->face_stride; i += 8u) {
         tl_f8 g = tl_f8_add(tl_f8_add(tl_f8_mul(tl_f8_loadu(p->nx + i), cx), tl_f8_mul(tl_f8_loadu(p->ny + i), cy)),
                             tl_f8_mul(tl_f8_loadu(p->nz + i), cz));
         g = tl_f8_sub(g, tl_f8_loadu(p->d + i));
         tl_f8_storeu(front + i, g);
-        most = tl_f8_max(g, most);
-    }
-    uint32_t vertex = 0;
-    float bias = kind == TL_AXIS_FACE_B ? s->bias : -s->bias;
-    for (uint32_t i = 0; i < p->face_stride; i += 8u) {
-        float bar = q->inner + best->separation + (kind == best->kind ? 0.0f : bias);
-        uint32_t bits = tl_m8_bits(tl_f8_gt(tl_f8_loadu(front + i), tl_f8_set1(bar)));
-        for (; bits != 0u; bits &= bits - 1u) {
-            uint32_t face = i + tl_low_bit(bits);
-            if (face >= p->face_count) {
+        uint32_t known = s->point_count, done = 0u, bits;
+        float bar = best->separation + (kind == best->kind ? 0.0f : bias);
+        for (bits = open_faces(p, at, known, i, g, q->inner, bar); bits != 0u; bits &= ~done) {
+            uint32_t lane = tl_low_bit(bits);
+            done |= 2u * (1u << lane) - 1u;
+            if (i + lane >= p->face_count) {
                 break;
             }
-            try_face(s, p, q, at, kind, face, &vertex, best);
-            if (best->separation > s->enough) {
-                return;
+            try_face(s, p, q, at, kind, i + lane, &vertex, best);
+            if ((bits & ~done) != 0u) {
+                bar = best->separation + (kind == best->kind ? 0.0f : bias);
+                bits = open_faces(p, at, s->point_count, i, g, q->inner, bar);
             }
         }
     }

@@ -52,7 +52,8 @@ void tl_core_init(tl_core *core, const tl_convex *shape, const talus_pose *pose)
     default:
         core->kind = TL_CORE_HULL;
         core->hull = shape->hull;
-        core->size = tl_length(shape->hull->centroid) + shape->hull->outer_radius;
+        core->size = tl_abs(shape->hull->centroid.x) + tl_abs(shape->hull->centroid.y) +
+                     tl_abs(shape->hull->centroid.z) + shape->hull->outer_radius;
         break;
     }
 }
