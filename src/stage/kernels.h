@@ -21,7 +21,7 @@ typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);
 
 typedef struct tl_kernels {
     tl_kernel velocity, position, push;                     /* ranges of eight body rows */
-    tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, bounce_contacts, store_contacts; /* groups */
+    tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, bounce_contacts, store_contacts; /* groups */
     tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */
 } tl_kernels;
 

@@ -84,8 +84,9 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     k->position(step, 0, step->rows);
     watch_lap(w, TALUS_STAGE_POSITION);
     k->turn_joints(step, 0, joints);
-    if (joints) {
+    if (joints || contacts) {
         k->push_joints(step, 0, joints);
+        k->push_contacts(step, 0, contacts);
         k->push(step, 0, step->rows);
     }
     for (uint32_t i = 0; i < passes; i++) {

@@ -6,6 +6,11 @@
  * stack upright: Gauss-Seidel needs a number of passes that grows with the fourth power of the height to stop it from
  * bending, and until it is there only a force that grows with the overlap does. */
 
+/* Overlap beyond PUSH_DEPTH (m) is more than the spring should be left with: PUSH_SHARE of the excess is taken back in a
+ * sub-step as a displacement that leaves no speed behind, so that the bottom of a deep pile does not give way. */
+#define PUSH_DEPTH 4e-3f
+#define PUSH_SHARE 0.6f
+
 /* The velocities of eight pairs of bodies, or their displacements. */
 typedef struct pair_velocity {
     v8 va, ua, vb, ub;
@@ -158,6 +163,35 @@ static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
 static void relax_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         solve_contact_group(step, &tl_group_pool(step->h)[i], 0);
+    }
+}
+
+/* One Gauss-Seidel pass over displacements. */
+static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    const float *moves = tl_row_moved(step->h)->f;
+    float *pushes = tl_row_push(step->h)->f;
+    tl_f8 zero = tl_f8_zero(), share = tl_f8_set1(PUSH_SHARE), slop = tl_f8_set1(PUSH_DEPTH);
+    tl_f8 most = tl_f8_set1(step->h->settings.push_speed * step->sub);
+    for (uint32_t k = first; k < last; k++) {
+        const tl_contact_group *g = &tl_group_pool(step->h)[k];
+        pair_velocity p;
+        tl_f8 r[8];
+        load_pair(pushes, g->a, g->b, &p);
+        v8 n = v8_load(g->normal[0]);
+        tl_f8_load_rows(moves, g->a, r);
+        v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
+        tl_f8_load_rows(moves, g->b, r);
+        v8 db = v8_of(r[3], r[4], r[5]);
+        tl_f8 way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
+        for (uint32_t i = 0; i < g->points; i++) {
+            const tl_contact_lane_point *c = &g->point[i];
+            v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
+            tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
+            gap = tl_f8_add(gap, row_speed(&p, n, ja, jb));
+            tl_f8 depth = tl_f8_max(tl_f8_sub(tl_f8_neg(gap), slop), zero);
+            apply_row(&p, n, ja, jb, tl_f8_mul(tl_f8_load(c->mass), tl_f8_min(tl_f8_mul(depth, share), most)));
+        }
+        store_pair(pushes, g->a, g->b, &p);
     }
 }
 
