@@ -15,6 +15,7 @@ typedef struct tl_step {
     float bias_rate, mass_scale, impulse_scale; /* of soft contacts */
     uint32_t rows;     /* body rows in use, the still one included, rounded up to eight */
     int any_locks;
+    int first_pass;    /* the first pass over the contacts in this step */
 } tl_step;
 
 typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);

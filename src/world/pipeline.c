@@ -57,7 +57,7 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->inverse_sub = 1.0f / step->sub;
     step->warm_scale = h->settings.substep > 0.0f ? step->sub / h->settings.substep : 1.0f;
     step->rows = 0;
-    step->any_locks = 0;
+    step->any_locks = step->first_pass = 0;
     h->settings.substep = step->sub;
     set_softness(step);
     tl_events_begin(h);
@@ -75,8 +75,10 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->solve_joints(step, 0, joints);
+        step->first_pass = first && i == 0;
         k->solve_contacts(step, 0, contacts);
     }
+    step->first_pass = 0;
     if (step->any_locks) {
         tl_stage_locks(step);
     }

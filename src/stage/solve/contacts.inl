@@ -1,5 +1,5 @@
-/* Contacts solved eight manifolds at a time by projected Gauss-Seidel on impulses: Coulomb's cone at the manifold's centre,
- * friction about the normal, rolling resistance, then the normal impulses point by point.
+/* Contacts solved eight manifolds at a time by projected Gauss-Seidel on impulses: Coulomb's cone at the manifold's centre, friction
+ * about the normal, rolling resistance, and the normal impulses point by point.
  *
  * Soft constraints in sub-steps (Catto, "Soft constraints", GDC 2011, and "Solver2D", 2024): the pass before the move takes
  * overlap back as a damped spring, the pass after it takes the speed of that out again. The spring is what keeps a tall
@@ -109,23 +109,23 @@ static void solve_rolling(const tl_step *step, tl_contact_group *g, pair_velocit
     apply_spin(p, ja2, jb2, tl_f8_sub(new2, old2));
 }
 
-static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int with_bias) {
-    pair_velocity p;
+static inline void solve_friction(const tl_step *step, tl_contact_group *g, pair_velocity *p, v8 n) {
+    tl_f8 pressure = tl_f8_zero();
+    for (uint32_t i = 0; i < g->points; i++) {
+        pressure = tl_f8_add(pressure, tl_f8_load(g->point[i].impulse));
+    }
+    solve_tangent(g, p, n, pressure);
+    solve_twist(g, p, pressure);
+    if (g->rolls) {
+        solve_rolling(step, g, p, n, pressure);
+    }
+}
+
+static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_velocity *p, v8 n, int with_bias) {
     tl_f8 r[8], zero = tl_f8_zero(), one = tl_f8_set1(1.0f), inverse_h = tl_f8_set1(step->inverse_sub);
     tl_f8 rate = tl_f8_set1(step->bias_rate), push = tl_f8_set1(-step->h->settings.push_speed);
     tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
     const float *moves = tl_row_moved(step->h)->f;
-    load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
-    v8 n = v8_load(g->normal[0]);
-    tl_f8 pressure = zero;
-    for (uint32_t i = 0; i < g->points; i++) {
-        pressure = tl_f8_add(pressure, tl_f8_load(g->point[i].impulse));
-    }
-    solve_tangent(g, &p, n, pressure);
-    solve_twist(g, &p, pressure);
-    if (g->rolls) {
-        solve_rolling(step, g, &p, n, pressure);
-    }
     tl_f8_load_rows(moves, g->a, r);
     v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
     tl_f8_load_rows(moves, g->b, r);
@@ -143,13 +143,29 @@ static inline void solve_contact_group(const tl_step *step, tl_contact_group *g,
             mass = tl_f8_mul(mass, tl_f8_select(apart, one, soft_mass));
             now = tl_f8_sub(now, tl_f8_mul(tl_f8_select(apart, zero, soft_impulse), old));
         }
-        now = tl_f8_sub(now, tl_f8_mul(mass, tl_f8_add(row_speed(&p, n, ja, jb), bias)));
+        now = tl_f8_sub(now, tl_f8_mul(mass, tl_f8_add(row_speed(p, n, ja, jb), bias)));
         now = tl_f8_max(now, zero);
         tl_f8_store(c->impulse, now);
         if (g->bounces) {
             tl_f8_store(c->peak, tl_f8_max(tl_f8_load(c->peak), now));
         }
-        apply_row(&p, n, ja, jb, tl_f8_sub(now, old));
+        apply_row(p, n, ja, jb, tl_f8_sub(now, old));
+    }
+}
+
+/* Friction is bounded by the pressure of a pass without bias, for the spring's own is too low until it has given way: before
+ * the move that is the one of the last sub-step, or in a new contact none yet. */
+static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int with_bias) {
+    int friction_first = with_bias && !step->first_pass;
+    pair_velocity p;
+    load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+    v8 n = v8_load(g->normal[0]);
+    if (friction_first) {
+        solve_friction(step, g, &p, n);
+    }
+    solve_normals(step, g, &p, n, with_bias);
+    if (!friction_first) {
+        solve_friction(step, g, &p, n);
     }
     store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
 }
