@@ -44,9 +44,9 @@ typedef struct talus_world_def {
     talus_vec3 gravity;          /* m/s^2 */
     uint32_t substeps;           /* 1..TALUS_MAX_SUBSTEPS */
     uint32_t iterations;         /* solver passes a sub-step, 1..TALUS_MAX_ITERATIONS */
-    float push_share;            /* 0..1, of an overlap that a sub-step takes back */
-    float push_slop;             /* m, overlap that is left as it is, so that resting contacts stay closed */
-    float push_speed;            /* m/s, the fastest that overlap is taken back */
+    float contact_hertz;         /* stiffness of contacts in overlap, Hz; bounded by what the sub-steps can follow */
+    float contact_damping_ratio; /* 1 is critical */
+    float push_speed;            /* m/s, the fastest that overlap is pushed out */
     float speculative_margin;    /* m, contacts are prepared this far ahead, and as far as bodies fly in a step */
     float recycle_slack;         /* m, a pair that moved less keeps its manifold; 0: none is kept */
     float restitution_speed;     /* m/s, slower impacts do not bounce */

@@ -11,6 +11,6 @@
 
 const tl_kernels TL_KERNELS = {
     velocity,       position,        push,           prepare_contacts, warm_contacts,
-    solve_contacts, push_contacts,   bounce_contacts, store_contacts,  begin_joints,
+    solve_contacts, relax_contacts, push_contacts,   bounce_contacts, store_contacts,  begin_joints,
     turn_joints,    solve_joints,    relax_joints,   push_joints,    store_joints,
 };

@@ -35,6 +35,19 @@ static void watch_start(watch *w, const talus_clock *clock, talus_profile *profi
     }
 }
 
+/* A contact in overlap is a damped spring of the set frequency, no stiffer than what the sub-steps can follow. */
+#define MOST_HERTZ_OF_SUBSTEPS 0.21f
+
+static void set_softness(tl_step *step) {
+    const tl_settings *s = &step->h->settings;
+    float hertz = tl_min(s->contact_hertz, MOST_HERTZ_OF_SUBSTEPS * step->inverse_sub);
+    float omega = 6.2831853f * hertz, zeta = s->contact_damping_ratio, h = step->sub;
+    float a1 = 2.0f * zeta + h * omega, a2 = h * omega * a1, a3 = 1.0f / (1.0f + a2);
+    step->bias_rate = omega / a1;
+    step->mass_scale = a2 * a3;
+    step->impulse_scale = a3;
+}
+
 static void begin_step(tl_step *step, const talus_world *world, float dt) {
     tl_header *h = tl_header_of(world);
     step->h = h;
@@ -44,8 +57,9 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->inverse_sub = 1.0f / step->sub;
     step->warm_scale = h->settings.substep > 0.0f ? step->sub / h->settings.substep : 1.0f;
     step->rows = 0;
-    step->any_locks = 0;
+    step->any_locks = step->first_pass = 0;
     h->settings.substep = step->sub;
+    set_softness(step);
     tl_events_begin(h);
     h->counters.islands_slept = h->counters.islands_woken = 0;
 }
@@ -61,8 +75,10 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->solve_joints(step, 0, joints);
+        step->first_pass = first && i == 0;
         k->solve_contacts(step, 0, contacts);
     }
+    step->first_pass = 0;
     if (step->any_locks) {
         tl_stage_locks(step);
     }
@@ -70,14 +86,14 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     k->position(step, 0, step->rows);
     watch_lap(w, TALUS_STAGE_POSITION);
     k->turn_joints(step, 0, joints);
-    if (contacts || joints) {
+    if (joints || contacts) {
         k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
         k->push(step, 0, step->rows);
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->relax_joints(step, 0, joints);
-        k->solve_contacts(step, 0, contacts);
+        k->relax_contacts(step, 0, contacts);
     }
     if (step->any_locks) {
         tl_stage_locks(step);

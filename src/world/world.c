@@ -51,8 +51,8 @@ talus_world_def talus_world_def_default(void) {
     def.gravity = tl_v(0.0f, -9.81f, 0.0f);
     def.substeps = 4;
     def.iterations = 1;
-    def.push_share = 0.2f;
-    def.push_slop = 1e-4f;
+    def.contact_hertz = 50.0f;
+    def.contact_damping_ratio = 0.7f;
     def.push_speed = 3.0f;
     def.speculative_margin = 0.02f;
     def.recycle_slack = 0.0005f;
@@ -73,7 +73,7 @@ static talus_status check_def(const talus_world_def *d) {
         !capacity_fits(d->joint_capacity) || !capacity_fits(d->contact_capacity) || !capacity_fits(d->event_capacity)) {
         return TALUS_BAD_ARGUMENT;
     }
-    const float numbers[] = {d->push_share,        d->push_slop, d->push_speed, d->speculative_margin,
+    const float numbers[] = {d->contact_hertz,     d->contact_damping_ratio, d->push_speed, d->speculative_margin,
                              d->recycle_slack,     d->restitution_speed,     d->hit_speed,  d->sleep_speed,
                              d->sleep_time,        d->gravity.x,             d->gravity.y,  d->gravity.z};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
@@ -82,8 +82,8 @@ static talus_status check_def(const talus_world_def *d) {
         }
     }
     int ok = d->substeps >= 1u && d->substeps <= TALUS_MAX_SUBSTEPS && d->iterations >= 1u &&
-             d->iterations <= TALUS_MAX_ITERATIONS && in_range(d->push_share, 0.0f, 1.0f) &&
-             in_range(d->push_slop, 0.0f, 1.0f) && in_range(d->push_speed, 0.0f, 1e4f) &&
+             d->iterations <= TALUS_MAX_ITERATIONS && in_range(d->contact_hertz, 1e-3f, 1e5f) &&
+             in_range(d->contact_damping_ratio, 0.0f, 1e4f) && in_range(d->push_speed, 0.0f, 1e4f) &&
              in_range(d->speculative_margin, 0.0f, 1e3f) && in_range(d->recycle_slack, 0.0f, 1.0f) &&
              in_range(d->restitution_speed, 0.0f, 1e4f) && in_range(d->hit_speed, 0.0f, 1e4f) &&
              in_range(d->sleep_speed, 0.0f, 1e4f) && in_range(d->sleep_time, 0.0f, 1e4f) &&
@@ -102,7 +102,7 @@ size_t talus_world_size(const talus_world_def *def) {
 static void take_settings(tl_settings *s, const talus_world_def *d) {
     s->gravity = d->gravity;
     s->substeps = d->substeps, s->iterations = d->iterations;
-    s->push_share = d->push_share, s->push_slop = d->push_slop;
+    s->contact_hertz = d->contact_hertz, s->contact_damping_ratio = d->contact_damping_ratio;
     s->push_speed = d->push_speed, s->speculative_margin = d->speculative_margin;
     s->recycle_slack = d->recycle_slack, s->restitution_speed = d->restitution_speed;
     s->hit_speed = d->hit_speed, s->sleep_speed = d->sleep_speed, s->sleep_time = d->sleep_time;
@@ -201,7 +201,7 @@ talus_status talus_world_get_def(const talus_world *world, talus_world_def *out)
     out->event_capacity = h->capacity[TL_COUNT_EVENT];
     out->gravity = s->gravity;
     out->substeps = s->substeps, out->iterations = s->iterations;
-    out->push_share = s->push_share, out->push_slop = s->push_slop;
+    out->contact_hertz = s->contact_hertz, out->contact_damping_ratio = s->contact_damping_ratio;
     out->push_speed = s->push_speed, out->speculative_margin = s->speculative_margin;
     out->recycle_slack = s->recycle_slack, out->restitution_speed = s->restitution_speed;
     out->hit_speed = s->hit_speed, out->sleep_speed = s->sleep_speed, out->sleep_time = s->sleep_time;

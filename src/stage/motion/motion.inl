@@ -149,7 +149,7 @@ static void position(const tl_step *step, uint32_t first, uint32_t last) {
     }
 }
 
-/* push: takes the displacements that part overlapping bodies into the poses. */
+/* push: takes the displacements of the push into the poses. */
 static void push(const tl_step *step, uint32_t first, uint32_t last) {
     tl_row8 *moves = tl_row_moved(step->h), *poses = tl_row_pose(step->h), *pushes = tl_row_push(step->h);
     const tl_row8 *frames = tl_row_frame(step->h);

@@ -1,10 +1,15 @@
-/* Contacts solved eight manifolds at a time by projected Gauss-Seidel on impulses: Coulomb's cone at the manifold's centre,
- * friction about the normal, rolling resistance, then the normal impulses point by point.
+/* Contacts solved eight manifolds at a time by projected Gauss-Seidel on impulses: Coulomb's cone at the manifold's centre, friction
+ * about the normal, rolling resistance, and the normal impulses point by point.
  *
- * Velocities and overlap are kept apart. The velocity pass only stops what would meet within the sub-step; the push takes a
- * share of what overlap is left back as displacements that leave no speed behind (the split of Guendelman, Bridson and
- * Fedkiw, "Nonconvex rigid bodies with stacking", SIGGRAPH 2003, and the nonlinear Gauss-Seidel of Catto, GDC 2014). A
- * load then rests on converged impulses and not on a spring, so that a stack does not sink under its own weight. */
+ * Soft constraints in sub-steps (Catto, "Soft constraints", GDC 2011, and "Solver2D", 2024): the pass before the move takes
+ * overlap back as a damped spring, the pass after it takes the speed of that out again. The spring is what keeps a tall
+ * stack upright: Gauss-Seidel needs a number of passes that grows with the fourth power of the height to stop it from
+ * bending, and until it is there only a force that grows with the overlap does. */
+
+/* Overlap beyond PUSH_DEPTH (m) is more than the spring should be left with: PUSH_SHARE of the excess is taken back in a
+ * sub-step as a displacement that leaves no speed behind, so that the bottom of a deep pile does not give way. */
+#define PUSH_DEPTH 4e-3f
+#define PUSH_SHARE 0.6f
 
 /* The velocities of eight pairs of bodies, or their displacements. */
 typedef struct pair_velocity {
@@ -104,21 +109,23 @@ static void solve_rolling(const tl_step *step, tl_contact_group *g, pair_velocit
     apply_spin(p, ja2, jb2, tl_f8_sub(new2, old2));
 }
 
-static inline void solve_contact_group(const tl_step *step, tl_contact_group *g) {
-    pair_velocity p;
-    tl_f8 r[8], zero = tl_f8_zero(), inverse_h = tl_f8_set1(step->inverse_sub);
-    const float *moves = tl_row_moved(step->h)->f;
-    load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
-    v8 n = v8_load(g->normal[0]);
-    tl_f8 pressure = zero;
+static inline void solve_friction(const tl_step *step, tl_contact_group *g, pair_velocity *p, v8 n) {
+    tl_f8 pressure = tl_f8_zero();
     for (uint32_t i = 0; i < g->points; i++) {
         pressure = tl_f8_add(pressure, tl_f8_load(g->point[i].impulse));
     }
-    solve_tangent(g, &p, n, pressure);
-    solve_twist(g, &p, pressure);
+    solve_tangent(g, p, n, pressure);
+    solve_twist(g, p, pressure);
     if (g->rolls) {
-        solve_rolling(step, g, &p, n, pressure);
+        solve_rolling(step, g, p, n, pressure);
     }
+}
+
+static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_velocity *p, v8 n, int with_bias) {
+    tl_f8 r[8], zero = tl_f8_zero(), one = tl_f8_set1(1.0f), inverse_h = tl_f8_set1(step->inverse_sub);
+    tl_f8 rate = tl_f8_set1(step->bias_rate), push = tl_f8_set1(-step->h->settings.push_speed);
+    tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
+    const float *moves = tl_row_moved(step->h)->f;
     tl_f8_load_rows(moves, g->a, r);
     v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
     tl_f8_load_rows(moves, g->b, r);
@@ -128,26 +135,59 @@ static inline void solve_contact_group(const tl_step *step, tl_contact_group *g)
         tl_contact_lane_point *c = &g->point[i];
         v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
         tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
-        tl_f8 goal = tl_f8_mul(tl_f8_max(gap, zero), inverse_h);
-        tl_f8 old = tl_f8_load(c->impulse), excess = tl_f8_add(row_speed(&p, n, ja, jb), goal);
-        tl_f8 now = tl_f8_sub(old, tl_f8_mul(tl_f8_load(c->mass), excess));
+        tl_m8 apart = tl_f8_gt(gap, zero);
+        tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_load(c->mass);
+        tl_f8 old = tl_f8_load(c->impulse), now = old;
+        if (with_bias) {
+            bias = tl_f8_select(apart, bias, tl_f8_max(tl_f8_mul(gap, rate), push));
+            mass = tl_f8_mul(mass, tl_f8_select(apart, one, soft_mass));
+            now = tl_f8_sub(now, tl_f8_mul(tl_f8_select(apart, zero, soft_impulse), old));
+        }
+        now = tl_f8_sub(now, tl_f8_mul(mass, tl_f8_add(row_speed(p, n, ja, jb), bias)));
         now = tl_f8_max(now, zero);
         tl_f8_store(c->impulse, now);
         if (g->bounces) {
             tl_f8_store(c->peak, tl_f8_max(tl_f8_load(c->peak), now));
         }
-        apply_row(&p, n, ja, jb, tl_f8_sub(now, old));
+        apply_row(p, n, ja, jb, tl_f8_sub(now, old));
+    }
+}
+
+/* Friction is bounded by the pressure of a pass without bias, for the spring's own is too low until it has given way: before
+ * the move that is the one of the last sub-step, or in a new contact none yet. */
+static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int with_bias) {
+    int friction_first = with_bias && !step->first_pass;
+    pair_velocity p;
+    load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+    v8 n = v8_load(g->normal[0]);
+    if (friction_first) {
+        solve_friction(step, g, &p, n);
+    }
+    solve_normals(step, g, &p, n, with_bias);
+    if (!friction_first) {
+        solve_friction(step, g, &p, n);
     }
     store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
 }
 
-/* One Gauss-Seidel pass over displacements: each point in overlap takes back its share of what the slop does not allow. */
+static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        solve_contact_group(step, &tl_group_pool(step->h)[i], 1);
+    }
+}
+
+static void relax_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        solve_contact_group(step, &tl_group_pool(step->h)[i], 0);
+    }
+}
+
+/* One Gauss-Seidel pass over displacements. */
 static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     const float *moves = tl_row_moved(step->h)->f;
     float *pushes = tl_row_push(step->h)->f;
-    const tl_settings *settings = &step->h->settings;
-    tl_f8 zero = tl_f8_zero(), share = tl_f8_set1(settings->push_share), slop = tl_f8_set1(settings->push_slop);
-    tl_f8 most = tl_f8_set1(settings->push_speed * step->sub);
+    tl_f8 zero = tl_f8_zero(), share = tl_f8_set1(PUSH_SHARE), slop = tl_f8_set1(PUSH_DEPTH);
+    tl_f8 most = tl_f8_set1(step->h->settings.push_speed * step->sub);
     for (uint32_t k = first; k < last; k++) {
         const tl_contact_group *g = &tl_group_pool(step->h)[k];
         pair_velocity p;
@@ -168,12 +208,6 @@ static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
             apply_row(&p, n, ja, jb, tl_f8_mul(tl_f8_load(c->mass), tl_f8_min(tl_f8_mul(depth, share), most)));
         }
         store_pair(pushes, g->a, g->b, &p);
-    }
-}
-
-static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
-    for (uint32_t i = first; i < last; i++) {
-        solve_contact_group(step, &tl_group_pool(step->h)[i]);
     }
 }
 

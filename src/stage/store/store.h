@@ -37,7 +37,7 @@ typedef enum tl_count {
 typedef struct tl_settings {
     talus_vec3 gravity;
     uint32_t substeps, iterations;
-    float push_share, push_slop, push_speed;
+    float contact_hertz, contact_damping_ratio, push_speed;
     float speculative_margin, recycle_slack, restitution_speed, hit_speed, sleep_speed, sleep_time;
     uint32_t enable_sleep;
     float substep; /* s, of the last step: scales the impulses that the next one starts from */
