@@ -149,7 +149,7 @@ talus_status talus_world_get_counters(const talus_world *world, talus_counters *
 /* A 64-bit hash of the state: equal worlds have equal hashes on every machine. One pass over the live columns. */
 uint64_t talus_world_hash(const talus_world *world);
 
-/* Whether every index, link and count of the block is sound. O(size). */
+/* Whether every index, link, count and number of the block is sound: TALUS_OK or TALUS_BAD_BLOB. O(size). */
 talus_status talus_world_validate(const talus_world *world);
 
 /* Where two blocks of the same capacities first differ: the column's name, the row and the byte in it. Returns 1 if they

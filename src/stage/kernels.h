@@ -15,6 +15,7 @@ typedef struct tl_step {
     float bias_rate, mass_scale, impulse_scale; /* of soft contacts */
     uint32_t rows;     /* body rows in use, the still one included, rounded up to eight */
     int any_locks;
+    int pushes;        /* something is deep enough, or tied by joints, to be pushed */
     int first_pass;    /* the first pass over the contacts in this step */
 } tl_step;
 

@@ -6,9 +6,8 @@
  * stack upright: Gauss-Seidel needs a number of passes that grows with the fourth power of the height to stop it from
  * bending, and until it is there only a force that grows with the overlap does. */
 
-/* Overlap beyond PUSH_DEPTH (m) is more than the spring should be left with: PUSH_SHARE of the excess is taken back in a
- * sub-step as a displacement that leaves no speed behind, so that the bottom of a deep pile does not give way. */
-#define PUSH_DEPTH 4e-3f
+/* Of overlap beyond PUSH_DEPTH this share is taken back in a sub-step as a displacement that leaves no speed behind, so that
+ * the bottom of a deep pile does not give way. */
 #define PUSH_SHARE 0.6f
 
 /* The velocities of eight pairs of bodies, or their displacements. */
@@ -190,6 +189,9 @@ static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     tl_f8 most = tl_f8_set1(step->h->settings.push_speed * step->sub);
     for (uint32_t k = first; k < last; k++) {
         const tl_contact_group *g = &tl_group_pool(step->h)[k];
+        if (!g->deep) {
+            continue;
+        }
         pair_velocity p;
         tl_f8 r[8];
         load_pair(pushes, g->a, g->b, &p);

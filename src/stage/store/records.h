@@ -52,7 +52,7 @@ typedef struct tl_shape_meta {
     uint32_t node;                          /* in the tree */
     int32_t group;
     float density;
-    uint32_t reserved;
+    uint32_t motion; /* the body's count when the fat box was made */
 } tl_shape_meta;
 
 typedef struct tl_material {
