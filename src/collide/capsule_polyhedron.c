@@ -98,6 +98,10 @@ int tl_collide_capsule_polyhedron(const tl_core *a, const tl_core *b, float marg
     }
     touch.normal = n;
     touch.separation = s - r;
+    out->normal = n;
+    if (s - r > margin) {
+        return 1;
+    }
     set_segment(&fb, tl_mad(c, -r, n), u);
     tl_manifold_build(&fa, &fb, &touch, margin, tolerance, out);
     if (out->count == 0 || (s > 0.0f && tl_manifold_least(out) + r > 1.0001f * s + tolerance)) {

@@ -71,5 +71,9 @@ void tl_collide_general(const tl_core *a, const tl_core *b, float margin, tl_pai
             touch = other;
         }
     }
+    if (touch.separation > margin) {
+        tl_cache_keep_axis(cache, touch.normal);
+        return;
+    }
     tl_manifold_meet(a, b, &touch, margin, out);
 }
