@@ -1,8 +1,8 @@
 /* The column table: every array of the block, in the order in which they lie in it.
  *
  * X(name, type, count, stage, life, word): `count` names a capacity, `stage` the one stage that writes the column during a
- * step, `life` whether it is part of the state (STATE: hashed, compared, saved) or lives for one step (STEP), `word` the
- * bytes of its members, which are all of one size so that the hash does not depend on the byte order. */
+ * step, `life` whether it is part of the state (STATE: hashed, compared, saved), can be found anew from it (INDEX) or lives for
+ * one step (STEP), `word` the bytes of its members, which are all of one size so that the hash does not depend on the byte order. */
 #ifndef TL_COLUMNS_H
 #define TL_COLUMNS_H
 
@@ -46,7 +46,7 @@
     X(contact_materials, tl_contact_material, CONTACT, NARROW, STATE, 4)  \
     X(contact_links, tl_contact_link, CONTACT, PAIRS, STATE, 4)           \
     X(awake_contact, uint32_t, CONTACT, PAIRS, STATE, 4)                 \
-    X(pair_slot, uint32_t, SLOT, PAIRS, STATE, 4)                        \
+    X(pair_slot, uint32_t, SLOT, PAIRS, INDEX, 4)                        \
     /* joints */                                                         \
     X(joints, tl_joint_record, JOINT, COMMANDS, STATE, 4)          \
     X(joint_states, tl_joint_state, JOINT, COMMIT, STATE, 4)              \

@@ -5,7 +5,7 @@
 
 #include "stage/store/hash.h"
 
-typedef enum life { LIFE_STATE, LIFE_STEP } life;
+typedef enum life { LIFE_STATE, LIFE_INDEX, LIFE_STEP } life;
 
 typedef struct column_info {
     const char *name;
@@ -93,8 +93,6 @@ uint32_t tl_store_live(const tl_header *h, tl_column_id column) {
         return h->nodes.high;
     case TL_COUNT_CONTACT:
         return h->contacts.high;
-    case TL_COUNT_SLOT:
-        return h->capacity[TL_COUNT_SLOT];
     case TL_COUNT_JOINT:
         return h->joints.high;
     default:
@@ -104,6 +102,16 @@ uint32_t tl_store_live(const tl_header *h, tl_column_id column) {
 
 static const unsigned char *column_bytes(const tl_header *h, uint32_t column) {
     return (const unsigned char *)h + (size_t)h->offset[column] * TL_UNIT;
+}
+
+int tl_store_state(const tl_header *h, tl_column_id column, tl_live *out) {
+    if (COLUMNS[column].life != LIFE_STATE) {
+        return 0;
+    }
+    out->rows = tl_store_live(h, column);
+    out->row_bytes = COLUMNS[column].row_bytes;
+    out->data = (unsigned char *)(uintptr_t)column_bytes(h, column);
+    return 1;
 }
 
 uint64_t talus_world_hash(const talus_world *world) {

@@ -96,6 +96,13 @@ uint32_t tl_pool_top(const tl_pool *pool, uint32_t capacity);
 /* How many rows of a column are live. */
 uint32_t tl_store_live(const tl_header *h, tl_column_id column);
 
+/* The live rows of a state column; 0 if the column is not part of the state. */
+typedef struct tl_live {
+    unsigned char *data;
+    uint32_t rows, row_bytes;
+} tl_live;
+int tl_store_state(const tl_header *h, tl_column_id column, tl_live *out);
+
 static inline talus_vec3 tl_row_xyz(const tl_row8 *r) { return tl_v(r->f[0], r->f[1], r->f[2]); }
 static inline talus_vec3 tl_row_345(const tl_row8 *r) { return tl_v(r->f[3], r->f[4], r->f[5]); }
 static inline talus_quat tl_row_quat(const tl_row8 *r) {
