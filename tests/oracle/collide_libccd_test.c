@@ -80,8 +80,7 @@ static void complain(const char *what, int ka, int kb, uint64_t seed, double our
 static void compare(int ka, int kb) {
     uint64_t seed = brute_state;
     tl_convex a = brute_shape(ka, 0.3f, 1.0f), b = brute_shape(kb, 0.3f, 1.0f);
-    talus_pose pose = {tl_scale(brute_direction(), brute_range(0.1f, 2.2f)), brute_rotation()},
-               identity = tl_pose_identity();
+    talus_pose pose = brute_pose(0.1f, 2.2f), identity = tl_pose_identity();
     placed pa = {&a, d_pose_of(&identity)}, pb = {&b, d_pose_of(&pose)};
     ccd_t ccd;
     CCD_INIT(&ccd);

@@ -354,9 +354,16 @@ static inline uint32_t brute_u32(void) {
 static inline float brute_range(float low, float high) {
     return low + (high - low) * ((float)(brute_u32() >> 8) / 16777216.0f);
 }
+/* Arguments of one call may be worked out in any order, so that each draw has a statement of its own. */
+static inline talus_vec3 brute_vector(float low, float high) {
+    float x = brute_range(low, high);
+    float y = brute_range(low, high);
+    float z = brute_range(low, high);
+    return tl_v(x, y, z);
+}
 static inline talus_vec3 brute_direction(void) {
     for (;;) {
-        talus_vec3 v = tl_v(brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f));
+        talus_vec3 v = brute_vector(-1.0f, 1.0f);
         float l2 = tl_length2(v);
         if (l2 > 0.01f && l2 < 1.0f) {
             return tl_normalize_or(v, v);
@@ -364,9 +371,17 @@ static inline talus_vec3 brute_direction(void) {
     }
 }
 static inline talus_quat brute_rotation(void) {
-    talus_quat q = {brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f),
-                    brute_range(-1.0f, 1.0f)};
+    talus_vec3 v = brute_vector(-1.0f, 1.0f);
+    float w = brute_range(-1.0f, 1.0f);
+    talus_quat q = {v.x, v.y, v.z, w};
     return tl_quat_normalize(q);
+}
+static inline talus_pose brute_pose(float near, float far) {
+    talus_vec3 d = brute_direction();
+    float distance = brute_range(near, far);
+    talus_quat q = brute_rotation();
+    talus_pose p = {tl_scale(d, distance), q};
+    return p;
 }
 
 static inline void brute_seed(const char *name) {
@@ -420,7 +435,7 @@ static inline tl_convex brute_shape(int kind, float low, float high) {
     if (kind == BRUTE_CONE && (brute_u32() & 3u) == 0) {
         g->radius_top = 0.0f;
     }
-    g->half = tl_v(brute_range(low, high), brute_range(low, high), brute_range(low, high));
+    g->half = brute_vector(low, high);
     switch (kind) {
     case BRUTE_SPHERE:
         g->type = TALUS_SPHERE;

@@ -275,9 +275,9 @@ static void steady(const tl_convex *a, const tl_convex *b, talus_pose rest, uint
     assert_int_equal(first.count, count);
     for (int i = 0; i < 200; ++i) {
         talus_pose p = rest;
-        float d = 1e-4f;
-        p.position = tl_add(p.position, tl_v(brute_range(-d, d), brute_range(-d, d) * 0.1f, brute_range(-d, d)));
-        p = turned(p, brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f), 1e-5);
+        talus_vec3 move = brute_vector(-1e-4f, 1e-4f), axis = brute_direction();
+        p.position = tl_add(p.position, tl_v(move.x, 0.1f * move.y, move.z));
+        p = turned(p, axis.x, axis.y, axis.z, 1e-5);
         tl_collide(a, b, &p, 0.02f, &cache, &m);
         assert_int_equal(m.count, count);
         for (uint32_t k = 0; k < count; ++k) {
@@ -340,7 +340,7 @@ static void boxes_around(void **state) {
     brute_state = 11;
     for (int i = 0; i < 400; ++i) {
         tl_convex s = brute_shape(i % BRUTE_KINDS, 0.1f, 2.0f);
-        talus_pose p = {tl_scale(brute_direction(), 3.0f), brute_rotation()};
+        talus_pose p = brute_pose(3.0f, 3.0f);
         talus_aabb box_around = tl_convex_aabb(&s, &p);
         d_pose pose = d_pose_of(&p);
         double low[3] = {(double)box_around.lower.x, (double)box_around.lower.y, (double)box_around.lower.z};
