@@ -377,13 +377,24 @@ static void expand(polytope *p) {
     }
 }
 
+static void start(polytope *p, const tl_core *a, const tl_core *b) {
+    p->a = a;
+    p->b = b;
+    p->scale = 1.0 / ((double)a->size + (double)b->size);
+    p->have_best = 0;
+    p->best_depth = 0.0f;
+    p->vertex_count = 0;
+}
+
+static void finish(polytope *p, tl_depth *out) {
+    witness(p);
+    p->best.depth = tl_max(p->best_depth, 0.0f);
+    *out = p->best;
+}
+
 void tl_epa_run(const tl_core *a, const tl_core *b, const tl_simplex *simplex, tl_depth *out) {
     polytope p;
-    p.a = a;
-    p.b = b;
-    p.scale = 1.0 / ((double)a->size + (double)b->size);
-    p.have_best = 0;
-    p.best_depth = 0.0f;
+    start(&p, a, b);
     take_simplex(&p, simplex);
     if (p.vertex_count == 0) {
         support(&p, tl_v(0.0f, 1.0f, 0.0f), 0);
@@ -399,7 +410,29 @@ void tl_epa_run(const tl_core *a, const tl_core *b, const tl_simplex *simplex, t
     if (!p.have_best) {
         flat_depth(&p);
     }
-    witness(&p);
-    p.best.depth = tl_max(p.best_depth, 0.0f);
-    *out = p.best;
+    finish(&p, out);
+}
+
+int tl_epa_from(const tl_core *a, const tl_core *b, talus_vec3 normal, tl_depth *out) {
+    polytope p;
+    start(&p, a, b);
+    /* three points where the surface is met by the normal or beside it, and one on the far side */
+    talus_vec3 m = tl_neg(normal), t = tl_perpendicular(m), u = tl_cross(m, t);
+    support(&p, tl_mad(m, 0.1f, t), 0);
+    p.vertex_count = 1;
+    support(&p, tl_mad(tl_mad(m, -0.05f, t), 0.0866f, u), 1);
+    support(&p, tl_mad(tl_mad(m, -0.05f, t), -0.0866f, u), 2);
+    support(&p, normal, 3);
+    p.vertex_count = 4;
+    if (!first_faces(&p)) {
+        return 0;
+    }
+    for (int i = 0; i < 4; ++i) {
+        if (p.face[i].d < 0.0) {
+            return 0;
+        }
+    }
+    expand(&p);
+    finish(&p, out);
+    return 1;
 }

@@ -315,28 +315,27 @@ void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch 
     tl_candidates_write(c, meet(a, b, touch->normal, margin, tolerance, c), touch, out);
 }
 
-void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out) {
-    tl_candidate c[MAX_CLIP];
-    tl_feature fa, fb;
-    talus_vec3 n = touch->normal, back = tl_neg(n);
+void tl_manifold_meet(const tl_core *a, const tl_core *b, tl_feature *fa, tl_feature *fb, const tl_touch *touch,
+                      float margin, tl_manifold *out) {
+    tl_candidate c[MAX_CLIP], own;
+    talus_vec3 n = touch->normal;
     float tolerance = tl_touch_tolerance(a, b);
-    tl_feature_find(a, n, 1, &fa);
-    tl_feature_find(b, back, fa.count < 3, &fb);
-    if (fa.count < 3 && fb.count >= 3) {
-        tl_feature_find(a, n, 0, &fa);
+    if (fa->count < 3 && fb->count >= 3) {
+        tl_feature_find(a, n, 0, fa);
+    } else if (fb->count < 3 && fa->count >= 3) {
+        tl_feature_find(b, tl_neg(n), 0, fb);
     }
-    uint32_t count = meet(&fa, &fb, n, margin, tolerance, c);
-    if (fa.count >= 3 && fb.count >= 3) {
-        int a_is_ref = face_is_reference(&fa, &fb, n);
+    uint32_t count = meet(fa, fb, n, margin, tolerance, c);
+    if (fa->count >= 3 && fb->count >= 3) {
+        int a_is_ref = face_is_reference(fa, fb, n);
         const tl_core *inc = a_is_ref ? b : a;
         if (inc->kind == TL_CORE_FRUSTUM) {
-            count = add_rim(inc, a_is_ref ? &fa : &fb, a_is_ref, n, margin, tolerance, c, count);
+            count = add_rim(inc, a_is_ref ? fa : fb, a_is_ref, n, margin, tolerance, c, count);
         }
     }
-    tl_candidate own;
     own.p = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
     own.gap = touch->separation;
-    own.id = touch_id(&fa, &fb);
+    own.id = touch_id(fa, fb);
     count = tl_candidates_add(&own, tolerance, c, count);
     tl_candidates_write(c, count, touch, out);
 }
