@@ -37,6 +37,7 @@ void tl_collide_general(const tl_core *a, const tl_core *b, float margin, tl_pai
     if (state == TL_GJK_BEYOND || (state == TL_GJK_APART && near.distance - radii > margin)) {
         tl_cache_keep_axis(cache, near.normal);
         out->normal = near.normal;
+        out->gap = state == TL_GJK_APART ? near.distance - radii : margin;
         return;
     }
     if (state == TL_GJK_APART) {
