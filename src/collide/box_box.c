@@ -313,19 +313,24 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
     uint32_t last = (cache->word[0] ^ TL_CACHE_BOXES) & 0xffffu;
     out->count = 0;
     out->normal = tl_v(0.0f, 1.0f, 0.0f);
-    if (last < 15u && separation_along(&x, last) > margin) {
-        return;
+    if (last < 15u) {
+        out->gap = separation_along(&x, last);
+        if (out->gap > margin) {
+            return;
+        }
     }
     if (cache->word[0] == TL_CACHE_AXIS) {
         uint32_t ia = 0, ib = 0;
         talus_vec3 va, vb, past = tl_cache_axis(cache, out->normal);
-        if (tl_core_separation(a, b, past, &ia, &ib, &va, &vb) > margin) {
+        out->gap = tl_core_separation(a, b, past, &ia, &ib, &va, &vb);
+        if (out->gap > margin) {
             return;
         }
     }
     float tolerance = tl_touch_tolerance(a, b);
     best_face(&x, tolerance, &axis);
     cache->word[0] = TL_CACHE_BOXES ^ (uint32_t)axis.number;
+    out->gap = axis.separation;
     if (axis.separation > margin) {
         return;
     }
@@ -342,6 +347,7 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
         cache->word[0] = TL_CACHE_BOXES ^ (uint32_t)axis.number;
         if (axis.separation > margin) {
             out->count = 0;
+            out->gap = axis.separation;
             return;
         }
         n = axis_normal(b, &x, &axis);

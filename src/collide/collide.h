@@ -23,6 +23,7 @@ typedef struct tl_manifold_point {
 typedef struct tl_manifold {
     talus_vec3 normal; /* unit, from A to B, in A's frame */
     uint32_t count;    /* 0..4 points with separation <= margin */
+    float gap;         /* m: without points, a distance that the shapes are known to have at least; 0 if none is */
     tl_manifold_point point[TL_MANIFOLD_POINTS];
 } tl_manifold;
 

@@ -105,13 +105,6 @@ static float ball_gap(const tl_header *h, const tl_contact_meta *meta) {
     return tl_length(tl_sub(tl_row_xyz(b), tl_row_xyz(a))) - in[meta->body_a].reach - in[meta->body_b].reach;
 }
 
-/* m: how far the boxes around two shapes are apart along the widest of the axes; negative if they overlap. */
-static float box_gap(const tl_convex *a, const talus_pose *pa, const tl_convex *b, const talus_pose *pb) {
-    talus_aabb ba = tl_convex_aabb(a, pa), bb = tl_convex_aabb(b, pb);
-    talus_vec3 d = tl_max3(tl_sub(bb.lower, ba.upper), tl_sub(ba.lower, bb.upper));
-    return tl_max(d.x, tl_max(d.y, d.z));
-}
-
 static void note_made(tl_header *h, tl_contact_meta *meta, int touches, float gap) {
     const uint32_t *motion = tl_body_motion(h);
     int touched = (meta->flags & TL_CONTACT_TOUCHING) != 0;
@@ -139,7 +132,7 @@ static void make_manifold(tl_step *step, uint32_t c) {
     tl_manifold m;
     tl_collide(&a, &b, &b_in_a, margin_of(step, meta), &tl_contact_caches(h)[c], &m);
     store_manifold(h, c, &m, &b_in_a, &pa, &pb);
-    note_made(h, meta, m.count > 0, m.count > 0 ? 0.0f : box_gap(&a, &pa, &b, &pb));
+    note_made(h, meta, m.count > 0, m.gap);
 }
 
 /* Whether the balls around the bodies tell already that they do not touch. */
