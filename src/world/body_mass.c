@@ -145,7 +145,8 @@ talus_status talus_body_get_mass(const talus_world *world, talus_body body, talu
     return status;
 }
 
-/* Symmetric, with a non-negative diagonal, and no moment larger than the sum of the two others by more than rounding. */
+/* Symmetric, with a non-negative diagonal, and no moment larger than the sum of the two others by more than rounding.
+ */
 static int is_inertia(const talus_mat3 *m) {
     float scale = tl_max(m->x.x, tl_max(m->y.y, m->z.z)), slack = 1e-4f * scale;
     return m->x.x >= 0.0f && m->y.y >= 0.0f && m->z.z >= 0.0f && tl_abs(m->x.y - m->y.x) <= slack &&

@@ -1,5 +1,5 @@
-/* The soundness of a block: that every count, index, link and number in it could have come from this library. Nothing is read
- * through an index before it was checked, so a damaged block gives a status and not a crash. */
+/* The soundness of a block: that every count, index, link and number in it could have come from this library. Nothing
+ * is read through an index before it was checked, so a damaged block gives a status and not a crash. */
 #include <string.h>
 
 #include "world/world_internal.h"

@@ -37,8 +37,10 @@ static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb 
     }
     float margin = margin_of(h, shape) + h->settings.speculative_margin;
     talus_vec3 m = tl_v(margin, margin, margin);
-    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[meta->body]), FAT_STEPS * dt), zero = tl_v(0.0f, 0.0f, 0.0f);
-    talus_aabb fat = {tl_add(tl_sub(box->lower, m), tl_min3(way, zero)), tl_add(tl_add(box->upper, m), tl_max3(way, zero))};
+    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[meta->body]), FAT_STEPS * dt),
+               zero = tl_v(0.0f, 0.0f, 0.0f);
+    talus_aabb fat = {tl_add(tl_sub(box->lower, m), tl_min3(way, zero)),
+                      tl_add(tl_add(box->upper, m), tl_max3(way, zero))};
     return fat;
 }
 
@@ -55,8 +57,8 @@ static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt)
     h->counters.proxies_refit++;
 }
 
-/* Whether a body's motion since a shape was entered, and that of the coming step, are within the fat box's margin whatever
- * their direction: the cheap answer, which needs no box. */
+/* Whether a body's motion since a shape was entered, and that of the coming step, are within the fat box's margin
+ * whatever their direction: the cheap answer, which needs no box. */
 static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, float dt) {
     uint32_t moved = tl_body_motion(h)[body] - tl_shapes(h)[shape].motion;
     float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
@@ -67,7 +69,8 @@ static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, f
 static int is_within(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
     const tl_row8 *fat = &tl_shape_fat(h)[shape];
     talus_aabb outer = {tl_row_xyz(fat), tl_row_345(fat)};
-    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[tl_shapes(h)[shape].body]), dt), zero = tl_v(0.0f, 0.0f, 0.0f);
+    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[tl_shapes(h)[shape].body]), dt),
+               zero = tl_v(0.0f, 0.0f, 0.0f);
     float m = h->settings.speculative_margin;
     talus_vec3 margin = tl_v(m, m, m);
     talus_aabb swept = {tl_add(tl_sub(box->lower, margin), tl_min3(way, zero)),

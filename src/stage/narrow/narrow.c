@@ -1,5 +1,5 @@
-/* Narrow: from pairs of shapes to manifolds. The state of a pair is its manifold with the features that made it, and how far
- * both bodies had gone by then: what moved less than the slack since is not looked at. */
+/* Narrow: from pairs of shapes to manifolds. The state of a pair is its manifold with the features that made it, and
+ * how far both bodies had gone by then: what moved less than the slack since is not looked at. */
 #include <string.h>
 
 #include "stage/broad/refit.h"
@@ -91,8 +91,8 @@ static talus_pose shape_pose(const tl_header *h, uint32_t body, uint32_t shape) 
     return tl_pose_mul(&b, &place);
 }
 
-/* What a pair may move, in micrometres, before it has to be looked at again although it is `gap` (m) apart: half of what is
- * left, so that a pair that was not looked at cannot have closed the rest within one more step. */
+/* What a pair may move, in micrometres, before it has to be looked at again although it is `gap` (m) apart: half of
+ * what is left, so that a pair that was not looked at cannot have closed the rest within one more step. */
 static uint32_t slack_of_gap(const tl_header *h, float gap) {
     float free = 0.5f * (gap - h->settings.speculative_margin);
     return free > 0.0f ? (uint32_t)tl_min(free * 1e6f, 1e9f) : 0u;

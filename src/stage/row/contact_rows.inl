@@ -11,8 +11,8 @@
 #define FAR_WEIGHT 1e-3f
 
 typedef struct contact_bodies {
-    v8 xa, xb;   /* centres of mass */
-    q8 qa, qb;   /* principal axes */
+    v8 xa, xb; /* centres of mass */
+    q8 qa, qb; /* principal axes */
     k8 ka, kb;
     v8 va, ua, vb, ub;
     tl_f8 ma, mb; /* inverse masses */
@@ -107,8 +107,8 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
     *lever = tl_f8_mul(ways, scale);
 }
 
-/* From the speed of approach when the step began to the one at which the surfaces meet, gaining or losing what gravity does
- * over the gap: v^2 = v0^2 + 2 a s. */
+/* From the speed of approach when the step began to the one at which the surfaces meet, gaining or losing what gravity
+ * does over the gap: v^2 = v0^2 + 2 a s. */
 static void prepare_bounce(const tl_step *step, tl_contact_group *g, v8 n) {
     tl_f8 r[8], zero = tl_f8_zero();
     const float *forces = tl_row_force(step->h)->f;

@@ -26,11 +26,9 @@ static uint32_t power_of_two_from(uint32_t n) {
     return p;
 }
 
-/* Groups of eight: full ones, one that is not full for each colour, and room for contacts beyond the last colour, which may
- * have to stand alone. */
-static uint32_t group_capacity(uint32_t contacts) {
-    return contacts / TL_LANES + TL_COLORS + contacts / 16u;
-}
+/* Groups of eight: full ones, one that is not full for each colour, and room for contacts beyond the last colour, which
+ * may have to stand alone. */
+static uint32_t group_capacity(uint32_t contacts) { return contacts / TL_LANES + TL_COLORS + contacts / 16u; }
 
 uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_COUNT],
                          uint32_t offset[TL_COLUMN_COUNT]) {
@@ -120,7 +118,8 @@ uint64_t talus_world_hash(const talus_world *world) {
     }
     const tl_header *h = tl_header_of(world);
     tl_hash hash = tl_hash_begin();
-    tl_hash_words(&hash, &h->settings, (size_t)((const unsigned char *)&h->end - (const unsigned char *)&h->settings) / 4u);
+    tl_hash_words(&hash, &h->settings,
+                  (size_t)((const unsigned char *)&h->end - (const unsigned char *)&h->settings) / 4u);
     for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
         if (COLUMNS[i].life != LIFE_STATE) {
             continue;

@@ -66,17 +66,16 @@ typedef struct tl_header {
     uint32_t root[2]; /* of the trees: moving, still */
     uint32_t steps_low, steps_high;
     uint32_t event_shapes, breaking_joints; /* in use: without any there is nothing to look for */
-    uint32_t end; /* marks where the state ends */
+    uint32_t end;                           /* marks where the state ends */
     talus_counters counters;
     tl_event_counts events;
     uint32_t groups, joint_groups, joint_rows; /* of the last step */
 } tl_header;
 
 /* One accessor a column: tl_body_pose(h) and so on. */
-#define X(name, type, count, stage, life, word)                                                       \
-    static inline type *tl_##name(const tl_header *h) {                                               \
-        return (type *)(void *)((unsigned char *)(uintptr_t)h +                                       \
-                                (size_t)h->offset[TL_COLUMN_##name] * TL_UNIT);                        \
+#define X(name, type, count, stage, life, word)                                                                        \
+    static inline type *tl_##name(const tl_header *h) {                                                                \
+        return (type *)(void *)((unsigned char *)(uintptr_t)h + (size_t)h->offset[TL_COLUMN_##name] * TL_UNIT);        \
     }
 TL_COLUMNS(X)
 #undef X
