@@ -26,10 +26,24 @@ static float margin_of(const tl_step *step, const tl_contact_meta *meta) {
     return step->h->settings.speculative_margin + tl_min(speed, 1e6f) * step->dt;
 }
 
-static float impulse_of(const tl_contact_points *old, uint32_t count, uint32_t id) {
+/* The impulses of a manifold before it is made anew. */
+typedef struct old_points {
+    uint32_t count, id[TL_MANIFOLD_POINTS];
+    float impulse[TL_MANIFOLD_POINTS];
+} old_points;
+
+static void keep_old(const tl_contact_points *points, uint32_t count, old_points *old) {
+    old->count = count;
     for (uint32_t i = 0; i < count; i++) {
-        if (old->p[i].id == id) {
-            return old->p[i].impulse;
+        old->id[i] = points->p[i].id;
+        old->impulse[i] = points->p[i].impulse;
+    }
+}
+
+static float impulse_of(const old_points *old, uint32_t id) {
+    for (uint32_t i = 0; i < old->count; i++) {
+        if (old->id[i] == id) {
+            return old->impulse[i];
         }
     }
     return 0.0f;
@@ -43,11 +57,12 @@ static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const
                            const talus_pose *pa, const talus_pose *pb) {
     tl_contact_meta *meta = &tl_contacts(h)[c];
     tl_contact_head *head = &tl_heads(h)[c];
-    tl_contact_points *points = &tl_points(h)[c], old = *points;
+    tl_contact_points *points = &tl_points(h)[c];
+    old_points old;
     const tl_contact_link *l = &tl_contact_links(h)[c];
     talus_pose place_a = is_fixed(h, meta->body_a) ? *pa : tl_row_pose_of(&tl_shape_place(h)[l->shape_a]);
     talus_pose place_b = is_fixed(h, meta->body_b) ? *pb : tl_row_pose_of(&tl_shape_place(h)[l->shape_b]);
-    memset(points, 0, sizeof *points);
+    keep_old(points, meta->count, &old);
     for (uint32_t i = 0; i < m->count; i++) {
         const tl_manifold_point *p = &m->point[i];
         talus_vec3 half = tl_scale(m->normal, 0.5f * p->separation);
@@ -57,7 +72,10 @@ static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const
         r->a[0] = a.x, r->a[1] = a.y, r->a[2] = a.z;
         r->b[0] = b.x, r->b[1] = b.y, r->b[2] = b.z;
         r->id = p->id;
-        r->impulse = impulse_of(&old, meta->count, p->id);
+        r->impulse = impulse_of(&old, p->id);
+    }
+    if (m->count < old.count) {
+        memset(&points->p[m->count], 0, (old.count - m->count) * sizeof points->p[0]);
     }
     talus_vec3 n = tl_rotate(place_a.rotation, m->normal);
     head->normal[0] = n.x, head->normal[1] = n.y, head->normal[2] = n.z;
