@@ -5,7 +5,7 @@
  * unsolved. */
 
 /* The share of an error that a sub-step takes back. */
-#define JOINT_SHARE 0.4f
+#define JOINT_SHARE 0.5f
 
 static inline tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int linear) {
     v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
