@@ -33,8 +33,8 @@ typedef struct talus_body_def {
     float linear_damping;        /* 1/s, >= 0 */
     float angular_damping;       /* 1/s, >= 0 */
     float gravity_scale;
-    uint32_t locks;        /* TALUS_LOCK_* */
-    uint8_t can_sleep;     /* may rest at no cost when its island is still */
+    uint32_t locks;    /* TALUS_LOCK_* */
+    uint8_t can_sleep; /* may rest at no cost when its island is still */
     uint8_t starts_asleep;
     uint64_t user_data;
 } talus_body_def;
@@ -57,8 +57,8 @@ talus_status talus_body_get_velocity(const talus_world *world, talus_body body, 
 talus_status talus_body_set_velocity(talus_world *world, talus_body body, talus_vec3 linear, talus_vec3 angular);
 
 /* Mass, centre and inertia in the body's frame. A mass set here stays, whatever shapes come or go;
- * talus_body_mass_from_shapes goes back to the shapes' own. The inertia must be symmetric and positive. An infinite mass
- * or inertia is given as 0 and means that the body does not translate or does not turn. */
+ * talus_body_mass_from_shapes goes back to the shapes' own. The inertia must be symmetric and positive. An infinite
+ * mass or inertia is given as 0 and means that the body does not translate or does not turn. */
 talus_status talus_body_get_mass(const talus_world *world, talus_body body, talus_mass *out);
 talus_status talus_body_set_mass(talus_world *world, talus_body body, const talus_mass *mass);
 talus_status talus_body_mass_from_shapes(talus_world *world, talus_body body);

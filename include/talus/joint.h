@@ -40,8 +40,8 @@ typedef struct talus_joint_def {
     talus_pose frame_a, frame_b; /* in the body's frame, or the world's */
     talus_axis linear[3];
     talus_axis angular[3];
-    /* A cone: the axis `cone_axis` (0 x, 1 y, 2 z; anything else: none) of frame B stays within cone_angle (rad) of that of
-     * frame A. The two other angular axes are then free. */
+    /* A cone: the axis `cone_axis` (0 x, 1 y, 2 z; anything else: none) of frame B stays within cone_angle (rad) of
+     * that of frame A. The two other angular axes are then free. */
     int32_t cone_axis;
     float cone_angle, cone_stiffness, cone_damping;
     /* The distance of the frames' origins (m); counts if distance_enabled. The linear axes are then free. */

@@ -63,9 +63,9 @@ typedef struct talus_shape_def {
     talus_pose pose; /* in the body's frame */
     talus_material material;
     talus_filter filter;
-    float density;    /* kg/m^3, >= 0; counts while the body's mass is not set by the caller */
-    uint8_t sensor;   /* reports overlaps (sensor events) and pushes nothing */
-    uint8_t events;   /* reports contact begin, end and hit events */
+    float density;  /* kg/m^3, >= 0; counts while the body's mass is not set by the caller */
+    uint8_t sensor; /* reports overlaps (sensor events) and pushes nothing */
+    uint8_t events; /* reports contact begin, end and hit events */
     uint64_t user_data;
 } talus_shape_def;
 

@@ -8,6 +8,7 @@
 #include "talus/joint.h"
 #include "talus/loop.h"
 #include "talus/shape.h"
+#include "talus/snapshot.h"
 #include "talus/types.h"
 #include "talus/version.h"
 #include "talus/world.h"

@@ -56,18 +56,18 @@ typedef struct talus_joint {
 /* What a call answers. Anything but TALUS_OK means that nothing was changed. */
 typedef enum talus_status {
     TALUS_OK = 0,
-    TALUS_BAD_ARGUMENT,  /* a null pointer, or a number outside the stated range */
-    TALUS_NOT_FINITE,    /* a NaN or an infinity */
-    TALUS_BAD_MASS,      /* a dynamic body without a positive mass or inertia */
-    TALUS_BAD_SHAPE,     /* a size that is not positive, or outside the stated range */
-    TALUS_STALE_HANDLE,  /* the object is gone, or never was */
-    TALUS_SMALL_BLOCK,   /* fewer bytes than the size query asked for */
-    TALUS_UNALIGNED,     /* memory is not aligned as asked */
-    TALUS_BAD_BLOB,      /* a geometry blob is damaged or of another version */
-    TALUS_FLAT_HULL,     /* the points span no volume */
+    TALUS_BAD_ARGUMENT, /* a null pointer, or a number outside the stated range */
+    TALUS_NOT_FINITE,   /* a NaN or an infinity */
+    TALUS_BAD_MASS,     /* a dynamic body without a positive mass or inertia */
+    TALUS_BAD_SHAPE,    /* a size that is not positive, or outside the stated range */
+    TALUS_STALE_HANDLE, /* the object is gone, or never was */
+    TALUS_SMALL_BLOCK,  /* fewer bytes than the size query asked for */
+    TALUS_UNALIGNED,    /* memory is not aligned as asked */
+    TALUS_BAD_BLOB,     /* a geometry blob is damaged or of another version */
+    TALUS_FLAT_HULL,    /* the points span no volume */
     TALUS_TOO_MANY_POINTS,
-    TALUS_NO_ISA,        /* the instruction set is not in this build or on this processor */
-    TALUS_FULL_BODIES,   /* the capacity named is used up */
+    TALUS_NO_ISA,      /* the instruction set is not in this build or on this processor */
+    TALUS_FULL_BODIES, /* the capacity named is used up */
     TALUS_FULL_SHAPES,
     TALUS_FULL_JOINTS,
     TALUS_FULL_CONTACTS,

@@ -113,7 +113,8 @@ typedef struct talus_profile {
 } talus_profile;
 
 /* One step of dt seconds (0 < dt <= 1). `clock` and `profile` may be null: then no time is taken.
- * TALUS_BAD_ARGUMENT, TALUS_NOT_FINITE. What did not fit a capacity is dropped, counted and reported in the counters. */
+ * TALUS_BAD_ARGUMENT, TALUS_NOT_FINITE. What did not fit a capacity is dropped, counted and reported in the counters.
+ */
 talus_status talus_world_step(talus_world *world, float dt, const talus_clock *clock, talus_profile *profile);
 
 typedef struct talus_usage {
@@ -125,9 +126,9 @@ typedef struct talus_usage {
 typedef struct talus_counters {
     uint64_t steps;
     talus_usage bodies, shapes, joints, contacts, rows, events;
-    uint32_t awake_bodies;      /* dynamic or moving kinematic */
-    uint32_t sleeping_bodies;   /* skipped whole */
-    uint32_t proxies_refit;     /* boxes that had left their fat boxes */
+    uint32_t awake_bodies;    /* dynamic or moving kinematic */
+    uint32_t sleeping_bodies; /* skipped whole */
+    uint32_t proxies_refit;   /* boxes that had left their fat boxes */
     uint32_t pairs_made, pairs_ended;
     uint32_t manifolds_made;    /* computed in the last step */
     uint32_t manifolds_kept;    /* kept, for the pair had not moved enough */
@@ -137,8 +138,8 @@ typedef struct talus_counters {
     uint32_t joints_solved, joints_sleeping;
     uint32_t islands, islands_slept, islands_woken;
     uint32_t colors;
-    uint32_t lane_groups;        /* groups of eight in the solver */
-    uint32_t lanes_used;         /* lanes that held a constraint */
+    uint32_t lane_groups;         /* groups of eight in the solver */
+    uint32_t lanes_used;          /* lanes that held a constraint */
     uint32_t restitution_skipped; /* 1: nothing bounced, the stage did not run */
     uint32_t joints_skipped;
     uint32_t rolling_skipped;
@@ -149,11 +150,11 @@ talus_status talus_world_get_counters(const talus_world *world, talus_counters *
 /* A 64-bit hash of the state: equal worlds have equal hashes on every machine. One pass over the live columns. */
 uint64_t talus_world_hash(const talus_world *world);
 
-/* Whether every index, link and count of the block is sound. O(size). */
+/* Whether every index, link, count and number of the block is sound: TALUS_OK or TALUS_BAD_BLOB. O(size). */
 talus_status talus_world_validate(const talus_world *world);
 
-/* Where two blocks of the same capacities first differ: the column's name, the row and the byte in it. Returns 1 if they
- * differ, 0 if they are the same, -1 if they cannot be compared. */
+/* Where two blocks of the same capacities first differ: the column's name, the row and the byte in it. Returns 1 if
+ * they differ, 0 if they are the same, -1 if they cannot be compared. */
 typedef struct talus_difference {
     const char *column;
     uint32_t row, byte;

@@ -1,5 +1,5 @@
-/* Vectors, quaternions and matrices of float. Every operation is written out in the order it is carried out, so that the
- * results are the same on every compiler. */
+/* Vectors, quaternions and matrices of float. Every operation is written out in the order it is carried out, so that
+ * the results are the same on every compiler. */
 #ifndef TL_VEC_H
 #define TL_VEC_H
 

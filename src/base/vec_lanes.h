@@ -1,5 +1,5 @@
-/* Vectors and quaternions of eight lanes, in the same order of operations as vec.h. Includes whichever lanes the including
- * file has chosen. */
+/* Vectors and quaternions of eight lanes, in the same order of operations as vec.h. Includes whichever lanes the
+ * including file has chosen. */
 #ifndef TL_VEC_LANES_H
 #define TL_VEC_LANES_H
 
@@ -38,9 +38,7 @@ static inline v8 v8_msub(v8 a, tl_f8 s, v8 b) {
     return v8_of(tl_f8_sub(a.x, tl_f8_mul(s, b.x)), tl_f8_sub(a.y, tl_f8_mul(s, b.y)),
                  tl_f8_sub(a.z, tl_f8_mul(s, b.z)));
 }
-static inline tl_f8 v8_dot(v8 a, v8 b) {
-    return tl_f8_mad(tl_f8_mad(tl_f8_mul(a.x, b.x), a.y, b.y), a.z, b.z);
-}
+static inline tl_f8 v8_dot(v8 a, v8 b) { return tl_f8_mad(tl_f8_mad(tl_f8_mul(a.x, b.x), a.y, b.y), a.z, b.z); }
 static inline v8 v8_cross(v8 a, v8 b) {
     return v8_of(tl_f8_sub(tl_f8_mul(a.y, b.z), tl_f8_mul(a.z, b.y)),
                  tl_f8_sub(tl_f8_mul(a.z, b.x), tl_f8_mul(a.x, b.z)),
@@ -92,8 +90,6 @@ static inline k8 k8_of(q8 q, v8 s) {
 }
 static inline v8 k8_mul(const k8 *k, v8 v) { return v8_of(v8_dot(k->x, v), v8_dot(k->y, v), v8_dot(k->z, v)); }
 /* K^T u */
-static inline v8 k8_mul_t(const k8 *k, v8 u) {
-    return v8_mad(v8_mad(v8_scale(k->x, u.x), u.y, k->y), u.z, k->z);
-}
+static inline v8 k8_mul_t(const k8 *k, v8 u) { return v8_mad(v8_mad(v8_scale(k->x, u.x), u.y, k->y), u.z, k->z); }
 
 #endif

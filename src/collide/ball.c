@@ -143,7 +143,8 @@ void tl_collide_ball(const tl_convex *a, const tl_convex *b, const talus_pose *b
     int known = tl_point_distance(a, center, &distance, &n);
     out->count = 0;
     out->normal = n;
-    if (distance - radius > margin) {
+    out->gap = distance - radius;
+    if (out->gap > margin) {
         return;
     }
     if (!known) {

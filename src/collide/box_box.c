@@ -128,39 +128,6 @@ static talus_vec3 axis_normal(const tl_core *b, const boxes *x, const box_axis *
     return tl_v(n[0], n[1], n[2]);
 }
 
-/* A clipped face in the plane of the reference: x and y across it, z in front of it. */
-typedef struct face_point {
-    float x, y, z;
-    uint32_t label; /* of the edge to the next point: 0..3 the incident's, 4..7 the reference's sides +x -x +y -y */
-} face_point;
-
-#define FACE_POINTS 8
-
-/* Keeps what has sign * (x or y) <= limit. */
-static uint32_t cut_side(const face_point *in, uint32_t count, face_point *out, uint32_t side, float limit) {
-    float d[FACE_POINTS];
-    uint32_t kept = 0;
-    for (uint32_t k = 0; k < count; ++k) {
-        float v = side < 2u ? in[k].x : in[k].y;
-        d[k] = limit - ((side & 1u) ? -v : v);
-    }
-    for (uint32_t k = 0; k < count; ++k) {
-        uint32_t next = k + 1u < count ? k + 1u : 0u;
-        int here = d[k] >= 0.0f, there = d[next] >= 0.0f;
-        if (here && kept < FACE_POINTS) {
-            out[kept++] = in[k];
-        }
-        if (here != there && kept < FACE_POINTS) {
-            float t = d[k] / (d[k] - d[next]);
-            out[kept].x = in[k].x + t * (in[next].x - in[k].x);
-            out[kept].y = in[k].y + t * (in[next].y - in[k].y);
-            out[kept].z = in[k].z + t * (in[next].z - in[k].z);
-            out[kept++].label = here ? 4u + side : in[k].label;
-        }
-    }
-    return kept;
-}
-
 /* Two faces: which box each is of, and their numbers. */
 typedef struct face_pair {
     int ref_is_a;
@@ -190,19 +157,55 @@ static uint32_t side_number(const face_pair *f, uint32_t side) {
     return edge_number(p, p | along);
 }
 
-static uint32_t point_number(const face_pair *f, uint32_t before, uint32_t after) {
-    if (before < 4u && after < 4u) {
-        return tl_point_id(f->ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A, incident_corner(f, after), 0);
-    }
-    if (before >= 4u && after >= 4u) {
-        uint32_t x = before < 6u ? before : after, y = before < 6u ? after : before;
+/* A clipped face in the plane of the reference: x and y across it, z in front of it. */
+typedef struct face_point {
+    float x, y, z;
+    uint32_t id;
+    uint32_t label; /* of the edge to the next point: 0..3 the incident's, 4..7 the reference's sides +x -x +y -y */
+} face_point;
+
+#define FACE_POINTS 8
+
+/* The number of the point where the edge `label` of the clipped face crosses a side. */
+static uint32_t crossing_number(const face_pair *f, uint32_t label, uint32_t side) {
+    if (label >= 4u) {
+        uint32_t x = label < 6u ? label - 4u : side, y = label < 6u ? side : label - 4u;
         uint32_t corner =
-            (f->positive ? 1u : 0u) << f->axis | (x == 4u ? 1u : 0u) << f->axis_x | (y == 6u ? 1u : 0u) << f->axis_y;
+            (f->positive ? 1u : 0u) << f->axis | (x == 0u ? 1u : 0u) << f->axis_x | (y == 2u ? 1u : 0u) << f->axis_y;
         return tl_point_id(f->ref_is_a ? TL_ID_VERTEX_A : TL_ID_VERTEX_B, corner, 0);
     }
-    uint32_t inc = before < 4u ? before : after, side = side_number(f, (before < 4u ? after : before) - 4u);
-    uint32_t edge = edge_number(incident_corner(f, inc), incident_corner(f, (inc + 1u) & 3u));
-    return tl_point_id(TL_ID_EDGES, f->ref_is_a ? side : edge, f->ref_is_a ? edge : side);
+    uint32_t edge = edge_number(incident_corner(f, label), incident_corner(f, (label + 1u) & 3u));
+    uint32_t own = side_number(f, side);
+    return tl_point_id(TL_ID_EDGES, f->ref_is_a ? own : edge, f->ref_is_a ? edge : own);
+}
+
+/* Keeps what has sign * (x or y) <= limit. A point up to `band` outside is kept, and stands for the crossing beside it.
+ */
+static uint32_t cut_side(const face_pair *f, const face_point *in, uint32_t count, face_point *out, uint32_t side,
+                         float limit, float band) {
+    float d[FACE_POINTS];
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < count; ++k) {
+        float v = side < 2u ? in[k].x : in[k].y;
+        d[k] = limit - ((side & 1u) ? -v : v);
+    }
+    for (uint32_t k = 0; k < count; ++k) {
+        uint32_t next = k + 1u < count ? k + 1u : 0u;
+        int here = d[k] >= -band, there = d[next] >= -band;
+        if (here && kept < FACE_POINTS) {
+            out[kept] = in[k];
+            out[kept++].label = there || d[k] > 0.0f ? in[k].label : 4u + side;
+        }
+        if (here != there && (here ? d[k] : d[next]) > 0.0f && kept < FACE_POINTS) {
+            float t = d[k] / (d[k] - d[next]);
+            out[kept].x = in[k].x + t * (in[next].x - in[k].x);
+            out[kept].y = in[k].y + t * (in[next].y - in[k].y);
+            out[kept].z = in[k].z + t * (in[next].z - in[k].z);
+            out[kept].id = crossing_number(f, in[k].label, side);
+            out[kept++].label = here ? 4u + side : in[k].label;
+        }
+    }
+    return kept;
 }
 
 /* The manifold of a face of one box and the face of the other that looks at it the most. */
@@ -234,17 +237,20 @@ static void face_manifold(const tl_core *a, const tl_core *b, const boxes *x, co
     float cz = outward * (c[iz] + m[iz][f.inc] * hi) - h[iz];
     float ux = m[ix][f.inc_u] * hu, uy = m[iy][f.inc_u] * hu, uz = outward * m[iz][f.inc_u] * hu;
     float vx = m[ix][f.inc_v] * hv, vy = m[iy][f.inc_v] * hv, vz = outward * m[iz][f.inc_v] * hv;
-    face_point buffer[2][FACE_POINTS] = {{{cx + ux + vx, cy + uy + vy, cz + uz + vz, 0},
-                                          {cx - ux + vx, cy - uy + vy, cz - uz + vz, 1},
-                                          {cx - ux - vx, cy - uy - vy, cz - uz - vz, 2},
-                                          {cx + ux - vx, cy + uy - vy, cz + uz - vz, 3}}};
-    float slack = TL_SIDE_SLACK * 2.0f * tl_min(tl_min(h[ix], h[iy]), tl_min(hu, hv));
-    float lx = h[ix] + slack, ly = h[iy] + slack, ex = tl_abs(ux) + tl_abs(vx), ey = tl_abs(uy) + tl_abs(vy);
-    uint32_t count = 4, at = 0;
+    face_point buffer[2][FACE_POINTS] = {{{cx + ux + vx, cy + uy + vy, cz + uz + vz, 0, 0},
+                                          {cx - ux + vx, cy - uy + vy, cz - uz + vz, 0, 1},
+                                          {cx - ux - vx, cy - uy - vy, cz - uz - vz, 0, 2},
+                                          {cx + ux - vx, cy + uy - vy, cz + uz - vz, 0, 3}}};
+    uint32_t count = 4, at = 0, kind = f.ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A;
+    for (uint32_t k = 0; k < 4; ++k) {
+        buffer[0][k].id = tl_point_id(kind, incident_corner(&f, k), 0);
+    }
+    float band = TL_SIDE_SLACK * 2.0f * tl_min(tl_min(h[ix], h[iy]), tl_min(hu, hv));
+    float lx = h[ix] + band, ly = h[iy] + band, ex = tl_abs(ux) + tl_abs(vx), ey = tl_abs(uy) + tl_abs(vy);
     int crossed[4] = {cx + ex > lx, ex - cx > lx, cy + ey > ly, ey - cy > ly};
     for (uint32_t side = 0; side < 4; ++side) {
         if (crossed[side]) {
-            count = cut_side(buffer[at], count, buffer[1u - at], side, side < 2u ? lx : ly);
+            count = cut_side(&f, buffer[at], count, buffer[1u - at], side, side < 2u ? h[ix] : h[iy], band);
             at = 1u - at;
         }
     }
@@ -263,7 +269,7 @@ static void face_manifold(const tl_core *a, const tl_core *b, const boxes *x, co
         o->p = tl_v(p[0], p[1], p[2]);
         o->p = f.ref_is_a ? o->p : tl_core_place(b, o->p);
         o->gap = q->z;
-        o->id = point_number(&f, buffer[at][k > 0 ? k - 1u : count - 1u].label, q->label);
+        o->id = q->id;
     }
     if (kept > TL_MANIFOLD_POINTS) {
         kept = tl_candidates_reduce(candidates, kept, n, tl_touch_tolerance(a, b));
@@ -307,19 +313,24 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
     uint32_t last = (cache->word[0] ^ TL_CACHE_BOXES) & 0xffffu;
     out->count = 0;
     out->normal = tl_v(0.0f, 1.0f, 0.0f);
-    if (last < 15u && separation_along(&x, last) > margin) {
-        return;
+    if (last < 15u) {
+        out->gap = separation_along(&x, last);
+        if (out->gap > margin) {
+            return;
+        }
     }
     if (cache->word[0] == TL_CACHE_AXIS) {
         uint32_t ia = 0, ib = 0;
         talus_vec3 va, vb, past = tl_cache_axis(cache, out->normal);
-        if (tl_core_separation(a, b, past, &ia, &ib, &va, &vb) > margin) {
+        out->gap = tl_core_separation(a, b, past, &ia, &ib, &va, &vb);
+        if (out->gap > margin) {
             return;
         }
     }
     float tolerance = tl_touch_tolerance(a, b);
     best_face(&x, tolerance, &axis);
     cache->word[0] = TL_CACHE_BOXES ^ (uint32_t)axis.number;
+    out->gap = axis.separation;
     if (axis.separation > margin) {
         return;
     }
@@ -336,6 +347,7 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
         cache->word[0] = TL_CACHE_BOXES ^ (uint32_t)axis.number;
         if (axis.separation > margin) {
             out->count = 0;
+            out->gap = axis.separation;
             return;
         }
         n = axis_normal(b, &x, &axis);

@@ -87,7 +87,8 @@ int tl_collide_capsule_polyhedron(const tl_core *a, const tl_core *b, float marg
     talus_vec3 n = tl_v(p.nx[face], p.ny[face], p.nz[face]);
     out->count = 0;
     out->normal = n;
-    if (s - r > margin) {
+    out->gap = s - r;
+    if (out->gap > margin) {
         return 1;
     }
     if (s <= 0.0f && best_edge(&p, c, u, tolerance - 2e-5f * s, &s, &edge, &n)) {
@@ -98,6 +99,11 @@ int tl_collide_capsule_polyhedron(const tl_core *a, const tl_core *b, float marg
     }
     touch.normal = n;
     touch.separation = s - r;
+    out->normal = n;
+    out->gap = s - r;
+    if (out->gap > margin) {
+        return 1;
+    }
     set_segment(&fb, tl_mad(c, -r, n), u);
     tl_manifold_build(&fa, &fb, &touch, margin, tolerance, out);
     if (out->count == 0 || (s > 0.0f && tl_manifold_least(out) + r > 1.0001f * s + tolerance)) {

@@ -52,7 +52,8 @@ void tl_collide_capsules(const tl_convex *a, const tl_convex *b, const talus_pos
     float distance = tl_length(d), sum = ra + rb, aa = tl_length2(ua), bb = tl_length2(ub);
     out->count = 0;
     out->normal = tl_v(0.0f, 1.0f, 0.0f);
-    if (distance - sum > margin) {
+    out->gap = distance - sum;
+    if (out->gap > margin) {
         return;
     }
     if (distance > 1e-6f * (a->geometry.half_height + b->geometry.half_height + sum)) {

@@ -6,27 +6,14 @@
 
 #include <string.h>
 
-/* Poses further out than this (m) leave the shapes' sizes below the rounding of the distance. */
-#define FAR_AWAY 3e7f
-
-static int is_far(talus_vec3 t) { return tl_max(tl_max(tl_abs(t.x), tl_abs(t.y)), tl_abs(t.z)) > FAR_AWAY; }
-
 /* Two shapes too far apart for their form to count. */
-static void collide_far(const tl_convex *a, const tl_convex *b, talus_vec3 t, float margin, tl_manifold *out) {
-    tl_core ca, cb;
-    tl_core_init(&ca, a, NULL);
-    tl_core_init(&cb, b, NULL);
-    float m = tl_max(tl_max(tl_abs(t.x), tl_abs(t.y)), tl_abs(t.z));
-    talus_vec3 n = tl_normalize_or(t, tl_v(0.0f, 1.0f, 0.0f));
-    float length = tl_dot(n, tl_v(t.x / m, t.y / m, t.z / m));
-    /* a distance past the largest float is the largest float */
-    float distance = m > 3.4e38f / length ? 3.4e38f : m * length;
-    out->normal = n;
+static void collide_far(talus_vec3 t, float margin, tl_manifold *out) {
+    float distance = tl_far_distance(t, &out->normal);
     out->count = 0;
     if (distance <= margin) {
         out->count = 1;
         out->point[0].position = tl_scale(t, 0.5f);
-        out->point[0].separation = distance - (ca.size + cb.size);
+        out->point[0].separation = distance;
         out->point[0].id = 0;
     }
 }
@@ -66,8 +53,8 @@ static void collide_ordered(const tl_convex *a, const tl_convex *b, const talus_
 void tl_collide(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin, tl_pair_cache *cache,
                 tl_manifold *out) {
     memset(out, 0, sizeof *out);
-    if (is_far(b_in_a->position)) {
-        collide_far(a, b, b_in_a->position, margin, out);
+    if (tl_is_far(b_in_a->position)) {
+        collide_far(b_in_a->position, margin, out);
         return;
     }
     if (a->geometry.type >= b->geometry.type) {

@@ -23,6 +23,7 @@ typedef struct tl_manifold_point {
 typedef struct tl_manifold {
     talus_vec3 normal; /* unit, from A to B, in A's frame */
     uint32_t count;    /* 0..4 points with separation <= margin */
+    float gap;         /* m: without points, a distance that the shapes are known to have at least; 0 if none is */
     tl_manifold_point point[TL_MANIFOLD_POINTS];
 } tl_manifold;
 
@@ -31,8 +32,8 @@ typedef struct tl_pair_cache {
     uint32_t word[4];
 } tl_pair_cache;
 
-/* The manifold of a at the identity and b at `b_in_a`, with the points that are at most `margin` (m, >= 0) apart. Any type
- * against any type; the roles are as given (the normal goes from a to b). Finite input gives finite output. */
+/* The manifold of a at the identity and b at `b_in_a`, with the points that are at most `margin` (m, >= 0) apart. Any
+ * type against any type; the roles are as given (the normal goes from a to b). Finite input gives finite output. */
 void tl_collide(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin, tl_pair_cache *cache,
                 tl_manifold *out);
 

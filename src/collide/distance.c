@@ -8,6 +8,12 @@ float tl_distance(const tl_convex *a, const tl_convex *b, const talus_pose *b_in
     tl_gjk near;
     tl_core_init(&ca, a, NULL);
     tl_core_init(&cb, b, b_in_a);
+    if (tl_is_far(b_in_a->position)) {
+        float distance = tl_far_distance(b_in_a->position, &near.normal);
+        *point_a = tl_v(0.0f, 0.0f, 0.0f);
+        *point_b = b_in_a->position;
+        return distance;
+    }
     simplex.count = 0;
     near.normal = tl_v(0.0f, 1.0f, 0.0f);
     talus_vec3 guess = tl_cache_axis(cache, tl_normalize_or(b_in_a->position, near.normal));

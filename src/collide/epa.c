@@ -377,13 +377,24 @@ static void expand(polytope *p) {
     }
 }
 
+static void start(polytope *p, const tl_core *a, const tl_core *b) {
+    p->a = a;
+    p->b = b;
+    p->scale = 1.0 / ((double)a->size + (double)b->size);
+    p->have_best = 0;
+    p->best_depth = 0.0f;
+    p->vertex_count = 0;
+}
+
+static void finish(polytope *p, tl_depth *out) {
+    witness(p);
+    p->best.depth = tl_max(p->best_depth, 0.0f);
+    *out = p->best;
+}
+
 void tl_epa_run(const tl_core *a, const tl_core *b, const tl_simplex *simplex, tl_depth *out) {
     polytope p;
-    p.a = a;
-    p.b = b;
-    p.scale = 1.0 / ((double)a->size + (double)b->size);
-    p.have_best = 0;
-    p.best_depth = 0.0f;
+    start(&p, a, b);
     take_simplex(&p, simplex);
     if (p.vertex_count == 0) {
         support(&p, tl_v(0.0f, 1.0f, 0.0f), 0);
@@ -399,7 +410,44 @@ void tl_epa_run(const tl_core *a, const tl_core *b, const tl_simplex *simplex, t
     if (!p.have_best) {
         flat_depth(&p);
     }
-    witness(&p);
-    p.best.depth = tl_max(p.best_depth, 0.0f);
-    *out = p.best;
+    finish(&p, out);
+}
+
+/* Puts the fifth of the first points in, if it is outside of the others' tetrahedron. */
+static int add_fifth(polytope *p) {
+    for (uint32_t i = 0; i < p->face_end; ++i) {
+        if (vec_dot(p->face[i].n, p->w[4]) - p->face[i].d > TOLERANCE) {
+            p->vertex_count = 5;
+            return insert(p, 4, i);
+        }
+    }
+    return 1;
+}
+
+int tl_epa_from(const tl_core *a, const tl_core *b, talus_vec3 normal, float tilt, tl_depth *out) {
+    polytope p;
+    start(&p, a, b);
+    /* one point on the far side, and four where the surface is met by the normal, to all sides of it */
+    talus_vec3 m = tl_neg(normal), t = tl_perpendicular(m), u = tl_cross(m, t), side[4];
+    side[0] = tl_add(t, u);
+    side[1] = tl_sub(u, t);
+    side[2] = tl_neg(side[0]);
+    side[3] = tl_neg(side[1]);
+    support(&p, normal, 0);
+    p.vertex_count = 1;
+    for (uint32_t i = 0; i < 4; ++i) {
+        support(&p, tl_mad(m, tilt, side[i]), i + 1u);
+    }
+    p.vertex_count = 4;
+    if (!first_faces(&p) || !add_fifth(&p)) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < p.face_end; ++i) {
+        if (p.face[i].state == 1 && p.face[i].d < 0.0) {
+            return 0;
+        }
+    }
+    expand(&p);
+    finish(&p, out);
+    return 1;
 }

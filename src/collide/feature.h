@@ -46,9 +46,10 @@ void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch 
 /* The least separation in a manifold that has points. */
 float tl_manifold_least(const tl_manifold *m);
 
-/* Finds the features of both cores along the touch's normal and builds the manifold; the touch's own points are in it
- * where no others are as near. */
-void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out);
+/* The same with the features that were found strictly; where only one is a face the other is found again for it. The
+ * touch's own points are in the manifold where no others are as near. */
+void tl_manifold_meet(const tl_core *a, const tl_core *b, tl_feature *fa, tl_feature *fb, const tl_touch *touch,
+                      float margin, tl_manifold *out);
 
 /* Numbers for points: of a vertex of B on A, of a vertex of A on B, of two edges, and of two points. */
 static inline uint32_t tl_point_id(uint32_t kind, uint32_t a, uint32_t b) {

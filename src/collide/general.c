@@ -15,45 +15,84 @@ static void snap(const tl_core *a, const tl_core *b, talus_vec3 n, tl_touch *tou
     }
 }
 
-static void touch_overlap(const tl_core *a, const tl_core *b, const tl_simplex *simplex, tl_touch *touch) {
+static void set_touch(const tl_core *a, const tl_core *b, talus_vec3 n, float separation, talus_vec3 pa, talus_vec3 pb,
+                      tl_touch *touch) {
+    touch->normal = n;
+    touch->separation = separation - (a->radius + b->radius);
+    touch->point_a = tl_mad(pa, a->radius, n);
+    touch->point_b = tl_mad(pb, -b->radius, n);
+}
+
+/* Overlap from the last normal on. A face near to it on either shape is the likely answer: the points of the difference
+ * around a face's own normal are the corners of a facet, which EPA then has only to confirm. */
+static int overlap_again(const tl_core *a, const tl_core *b, talus_vec3 guess, float apart, tl_depth *depth) {
+    tl_feature face;
+    talus_vec3 n = guess, pa, pb;
+    float tilt = 0.02f;
+    for (int turn = 0; turn < 2; ++turn) {
+        uint32_t ia = 0, ib = 0;
+        tl_feature_find(turn ? b : a, turn ? tl_neg(guess) : guess, 1, &face);
+        if (face.count < 3) {
+            continue;
+        }
+        talus_vec3 m = turn ? tl_neg(face.normal) : face.normal;
+        float s = tl_core_separation(a, b, m, &ia, &ib, &pa, &pb);
+        if (s >= apart) {
+            apart = s;
+            n = m;
+            tilt = 1e-5f;
+        }
+    }
+    return apart < 0.0f && tl_epa_from(a, b, n, tilt, depth);
+}
+
+/* Where the shapes come nearest or overlap; 0 if they are further apart than `margin` along touch->normal. */
+static int find_touch(const tl_core *a, const tl_core *b, float margin, const tl_pair_cache *cache, tl_touch *touch) {
+    tl_simplex simplex;
+    tl_gjk near;
     tl_depth depth;
-    tl_epa_run(a, b, simplex, &depth);
-    touch->normal = depth.normal;
-    touch->separation = -depth.depth - (a->radius + b->radius);
-    touch->point_a = tl_mad(depth.point_a, a->radius, depth.normal);
-    touch->point_b = tl_mad(depth.point_b, -b->radius, depth.normal);
+    talus_vec3 guess = tl_cache_axis(cache, tl_normalize_or(b->t, tl_v(0.0f, 1.0f, 0.0f)));
+    float limit = margin + (a->radius + b->radius);
+    if (cache->word[0] == TL_CACHE_AXIS) {
+        uint32_t ia = 0, ib = 0;
+        float apart = tl_core_separation(a, b, guess, &ia, &ib, &near.point_a, &near.point_b);
+        if (apart > limit) {
+            touch->normal = guess;
+            return 0;
+        }
+        if (apart < 0.0f && overlap_again(a, b, guess, apart, &depth)) {
+            set_touch(a, b, depth.normal, -depth.depth, depth.point_a, depth.point_b, touch);
+            return 1;
+        }
+    }
+    simplex.count = 0;
+    tl_gjk_state state = tl_gjk_run(a, b, guess, limit, &simplex, &near);
+    if (state == TL_GJK_BEYOND || (state == TL_GJK_APART && near.distance > limit)) {
+        touch->normal = near.normal;
+        return 0;
+    }
+    if (state == TL_GJK_APART) {
+        set_touch(a, b, near.normal, near.distance, near.point_a, near.point_b, touch);
+    } else {
+        tl_epa_run(a, b, &simplex, &depth);
+        set_touch(a, b, depth.normal, -depth.depth, depth.point_a, depth.point_b, touch);
+    }
+    return 1;
 }
 
 void tl_collide_general(const tl_core *a, const tl_core *b, float margin, tl_pair_cache *cache, tl_manifold *out) {
-    tl_simplex simplex;
-    tl_gjk near;
     tl_touch touch;
-    float radii = a->radius + b->radius;
-    simplex.count = 0;
-    talus_vec3 guess = tl_cache_axis(cache, tl_normalize_or(b->t, tl_v(0.0f, 1.0f, 0.0f)));
-    tl_gjk_state state = tl_gjk_run(a, b, guess, margin + radii, &simplex, &near);
     out->count = 0;
-    out->normal = guess;
-    if (state == TL_GJK_BEYOND || (state == TL_GJK_APART && near.distance - radii > margin)) {
-        tl_cache_keep_axis(cache, near.normal);
-        out->normal = near.normal;
+    int meet = find_touch(a, b, margin, cache, &touch);
+    out->normal = touch.normal;
+    tl_cache_keep_axis(cache, touch.normal);
+    if (!meet) {
         return;
     }
-    if (state == TL_GJK_APART) {
-        touch.normal = near.normal;
-        touch.separation = near.distance - radii;
-        touch.point_a = tl_mad(near.point_a, a->radius, near.normal);
-        touch.point_b = tl_mad(near.point_b, -b->radius, near.normal);
-    } else {
-        touch_overlap(a, b, &simplex, &touch);
-    }
-    tl_cache_keep_axis(cache, touch.normal);
-
     if (a->kind == TL_CORE_POINT || b->kind == TL_CORE_POINT) {
-        out->normal = touch.normal;
         out->count = 1;
         out->point[0].position = tl_scale(tl_add(touch.point_a, touch.point_b), 0.5f);
-        out->point[0].separation = touch.separation;
+        out->point[0].separation = tl_min(touch.separation, margin);
         out->point[0].id = 0;
         return;
     }
@@ -71,5 +110,9 @@ void tl_collide_general(const tl_core *a, const tl_core *b, float margin, tl_pai
             touch = other;
         }
     }
-    tl_manifold_meet(a, b, &touch, margin, out);
+    out->normal = touch.normal;
+    if (touch.separation > margin) {
+        return;
+    }
+    tl_manifold_meet(a, b, &fa, &fb, &touch, margin, out);
 }

@@ -222,7 +222,12 @@ tl_gjk_state tl_gjk_run(const tl_core *a, const tl_core *b, talus_vec3 guess, fl
     w.ib = s->count > 0 ? s->vertex[0].ib : 0u;
     if (s->count == 0) {
         guess = tl_normalize_or(guess, tl_v(0.0f, 1.0f, 0.0f));
-        tl_core_separation(a, b, guess, &w.ia, &w.ib, &w.a, &w.b);
+        float apart = tl_core_separation(a, b, guess, &w.ia, &w.ib, &w.a, &w.b);
+        if (apart > limit) {
+            out->distance = apart;
+            out->normal = guess;
+            return TL_GJK_BEYOND;
+        }
         s->vertex[0] = w;
         s->count = 1;
     }

@@ -8,10 +8,11 @@
 #define FROM_REFERENCE 0x8000u
 #define RIM_ID 0x7ffeu /* the number of the lowest point of a disc */
 
+/* A label is of the edge from each point to the next: the incident's, or the reference's and the bit. */
 typedef struct clip_buffer {
     talus_vec3 p[MAX_CLIP];
-    uint16_t
-        label[MAX_CLIP]; /* of the edge from each point to the next: the incident's, or the reference's + the bit */
+    uint32_t id[MAX_CLIP];
+    uint16_t label[MAX_CLIP];
     uint32_t count;
 } clip_buffer;
 
@@ -27,61 +28,75 @@ static float extent(const tl_feature *f) {
     return length > 0.0f ? largest(tl_cross(u, w)) / length : 0.0f;
 }
 
-/* Inside of a side of the reference is where dot(side, x) + offset >= 0. */
-static float side_plane(const tl_feature *f, uint32_t i, talus_vec3 outward, float slack, talus_vec3 *side) {
+/* Inside of a side of the reference is where dot(side, x) + offset >= 0, and past the slack where it is >= -band. */
+typedef struct side_plane {
+    talus_vec3 side;
+    float offset, band;
+} side_plane;
+
+static side_plane side_of(const tl_feature *f, uint32_t i, talus_vec3 outward, float slack) {
+    side_plane s;
     uint32_t j = i + 1u < f->count ? i + 1u : 0u;
-    *side = tl_cross(outward, tl_sub(f->point[j], f->point[i]));
+    s.side = tl_cross(outward, tl_sub(f->point[j], f->point[i]));
     /* the sum of the sizes stands for the length, within a factor of 1.74 */
-    float length = tl_abs(side->x) + tl_abs(side->y) + tl_abs(side->z);
-    return slack * length - tl_dot(*side, f->point[i]);
+    s.band = slack * (tl_abs(s.side.x) + tl_abs(s.side.y) + tl_abs(s.side.z));
+    s.offset = -tl_dot(s.side, f->point[i]);
+    return s;
 }
 
-/* Cuts the polygon by one side; 0 if nothing is left. */
-static int cut(const clip_buffer *in, clip_buffer *out, talus_vec3 side, float offset, uint32_t side_label) {
+static float side_distance(const side_plane *s, talus_vec3 x) { return tl_dot(s->side, x) + s->offset; }
+
+/* Two features: which of them is the reference. */
+typedef struct feature_pair {
+    const tl_feature *ref, *inc;
+    int ref_is_a;
+} feature_pair;
+
+/* The number of the point where an edge of the clipped polygon crosses side i of the reference. */
+static uint32_t crossing_id(const feature_pair *f, uint32_t label, uint32_t i) {
+    const tl_feature *ref = f->ref;
+    if (!(label & FROM_REFERENCE)) {
+        uint32_t re = ref->edge[i], ie = f->inc->edge[label];
+        return tl_point_id(TL_ID_EDGES, f->ref_is_a ? re : ie, f->ref_is_a ? ie : re);
+    }
+    uint32_t j = label & ~FROM_REFERENCE, kind = f->ref_is_a ? TL_ID_VERTEX_A : TL_ID_VERTEX_B;
+    uint32_t i_next = i + 1u < ref->count ? i + 1u : 0u, j_next = j + 1u < ref->count ? j + 1u : 0u;
+    if (i_next == j || j_next == i) {
+        return tl_point_id(kind, ref->vertex[i_next == j ? j : i], 0);
+    }
+    /* sides that do not follow one another: what lay between them was too small to see */
+    return tl_point_id(kind, ref->edge[i], 1u + ref->edge[j]);
+}
+
+/* Cuts the polygon by side i; 0 if it stays as it is. A point in the band is kept, and stands for the crossing beside
+ * it. */
+static int cut(const feature_pair *f, const clip_buffer *in, clip_buffer *out, const side_plane *s, uint32_t i) {
     float d[MAX_CLIP];
     uint32_t inside = 0;
     for (uint32_t k = 0; k < in->count; ++k) {
-        d[k] = tl_dot(side, in->p[k]) + offset;
-        inside += d[k] >= 0.0f;
+        d[k] = side_distance(s, in->p[k]);
+        inside += d[k] >= -s->band;
     }
     if (inside == in->count) {
-        *out = *in;
-        return 1;
+        return 0;
     }
     out->count = 0;
     for (uint32_t k = 0; k < in->count && inside > 0; ++k) {
-        uint32_t next = k + 1u < in->count ? k + 1u : 0u;
-        int here = d[k] >= 0.0f, there = d[next] >= 0.0f;
-        if (here && out->count < MAX_CLIP) {
-            out->p[out->count] = in->p[k];
-            out->label[out->count++] = in->label[k];
+        uint32_t next = k + 1u < in->count ? k + 1u : 0u, n = out->count;
+        int here = d[k] >= -s->band, there = d[next] >= -s->band;
+        if (here && n < MAX_CLIP) {
+            out->p[n] = in->p[k];
+            out->id[n] = in->id[k];
+            out->label[n++] = there || d[k] > 0.0f ? in->label[k] : (uint16_t)(FROM_REFERENCE | i);
         }
-        if (here != there && out->count < MAX_CLIP) {
-            float t = d[k] / (d[k] - d[next]);
-            out->p[out->count] = tl_mad(in->p[k], t, tl_sub(in->p[next], in->p[k]));
-            out->label[out->count++] = here ? (uint16_t)(FROM_REFERENCE | side_label) : in->label[k];
+        if (here != there && (here ? d[k] : d[next]) > 0.0f && n < MAX_CLIP) {
+            out->p[n] = tl_mad(in->p[k], d[k] / (d[k] - d[next]), tl_sub(in->p[next], in->p[k]));
+            out->id[n] = crossing_id(f, in->label[k], i);
+            out->label[n++] = here ? (uint16_t)(FROM_REFERENCE | i) : in->label[k];
         }
+        out->count = n;
     }
-    return out->count > 0;
-}
-
-/* The number of the point between two edges of a clipped polygon. */
-static uint32_t corner_id(const tl_feature *ref, const tl_feature *inc, int ref_is_a, uint32_t before, uint32_t after) {
-    uint32_t i = before & ~FROM_REFERENCE, j = after & ~FROM_REFERENCE;
-    int ref_before = (before & FROM_REFERENCE) != 0, ref_after = (after & FROM_REFERENCE) != 0;
-    if (ref_before != ref_after) {
-        uint32_t re = ref->edge[ref_before ? i : j], ie = inc->edge[ref_before ? j : i];
-        return tl_point_id(TL_ID_EDGES, ref_is_a ? re : ie, ref_is_a ? ie : re);
-    }
-    const tl_feature *own = ref_before ? ref : inc;
-    int of_a = ref_before == ref_is_a;
-    uint32_t i_next = i + 1u < own->count ? i + 1u : 0u, j_next = j + 1u < own->count ? j + 1u : 0u;
-    uint32_t kind = of_a ? TL_ID_VERTEX_A : TL_ID_VERTEX_B;
-    if (i_next == j || j_next == i) {
-        return tl_point_id(kind, own->vertex[i_next == j ? j : i], 0);
-    }
-    /* edges that do not follow one another: what lay between them was too small to see */
-    return tl_point_id(kind, own->edge[i], 1u + own->edge[j]);
+    return 1;
 }
 
 /* How far x is in front of the reference's plane along the normal. */
@@ -96,61 +111,57 @@ static void measure(const tl_feature *ref, int ref_is_a, talus_vec3 n, float inv
     }
 }
 
-static uint32_t clip_polygon(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
-                             tl_candidate *out) {
+static uint32_t clip_polygon(const feature_pair *f, talus_vec3 n, float margin, tl_candidate *out) {
     clip_buffer buffer[2];
     clip_buffer *from = &buffer[0], *to = &buffer[1];
-    talus_vec3 outward = ref_is_a ? n : tl_neg(n);
+    const tl_feature *ref = f->ref, *inc = f->inc;
+    talus_vec3 outward = f->ref_is_a ? n : tl_neg(n);
     float slack = TL_SIDE_SLACK * tl_min(extent(ref), extent(inc));
+    uint32_t kind = f->ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A;
     from->count = inc->count;
     for (uint32_t k = 0; k < inc->count; ++k) {
         from->p[k] = inc->point[k];
         from->label[k] = (uint16_t)k;
+        from->id[k] = tl_point_id(kind, inc->vertex[k], 0);
     }
     for (uint32_t i = 0; i < ref->count; ++i) {
-        talus_vec3 side;
-        float offset = side_plane(ref, i, outward, slack, &side);
-        if (!cut(from, to, side, offset, i)) {
-            return 0;
+        side_plane side = side_of(ref, i, outward, slack);
+        if (cut(f, from, to, &side, i)) {
+            clip_buffer *swap = from;
+            from = to;
+            to = swap;
+            if (from->count == 0) {
+                return 0;
+            }
         }
-        clip_buffer *swap = from;
-        from = to;
-        to = swap;
     }
     float inverse = 1.0f / tl_dot(ref->normal, outward);
     uint32_t count = 0;
     for (uint32_t k = 0; k < from->count; ++k) {
-        uint32_t before = from->label[k > 0 ? k - 1u : from->count - 1u];
-        measure(ref, ref_is_a, n, inverse, margin, from->p[k], corner_id(ref, inc, ref_is_a, before, from->label[k]),
-                out, &count);
+        measure(ref, f->ref_is_a, n, inverse, margin, from->p[k], from->id[k], out, &count);
     }
     return count;
 }
 
-static uint32_t clip_segment(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
-                             tl_candidate *out) {
-    talus_vec3 outward = ref_is_a ? n : tl_neg(n);
+static uint32_t clip_segment(const feature_pair *f, talus_vec3 n, float margin, tl_candidate *out) {
+    const tl_feature *ref = f->ref, *inc = f->inc;
+    talus_vec3 outward = f->ref_is_a ? n : tl_neg(n);
     float slack = TL_SIDE_SLACK * tl_min(extent(ref), extent(inc)), low = 0.0f, high = 1.0f;
-    uint32_t kind = ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A;
+    uint32_t kind = f->ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A;
     uint32_t low_id = tl_point_id(kind, inc->vertex[0], 0), high_id = tl_point_id(kind, inc->vertex[1], 0);
     for (uint32_t i = 0; i < ref->count; ++i) {
-        talus_vec3 side;
-        float offset = side_plane(ref, i, outward, slack, &side);
-        float d0 = tl_dot(side, inc->point[0]) + offset, d1 = tl_dot(side, inc->point[1]) + offset;
-        uint32_t re = ref->edge[i], ie = inc->edge[0];
-        uint32_t id = tl_point_id(TL_ID_EDGES, ref_is_a ? re : ie, ref_is_a ? ie : re);
-        if (d0 < 0.0f && d1 < 0.0f) {
+        side_plane side = side_of(ref, i, outward, slack);
+        float d0 = side_distance(&side, inc->point[0]), d1 = side_distance(&side, inc->point[1]);
+        if (d0 < -side.band && d1 < -side.band) {
             return 0;
         }
-        if (d0 < 0.0f || d1 < 0.0f) {
-            float t = d0 / (d0 - d1);
-            if (d0 < 0.0f && t > low) {
-                low = t;
-                low_id = id;
-            } else if (d1 < 0.0f && t < high) {
-                high = t;
-                high_id = id;
-            }
+        float t = tl_clamp(d0 / (d0 - d1), 0.0f, 1.0f);
+        if (d0 < -side.band && t > low) {
+            low = t;
+            low_id = crossing_id(f, 0, i);
+        } else if (d1 < -side.band && t < high) {
+            high = t;
+            high_id = crossing_id(f, 0, i);
         }
     }
     if (low > high) {
@@ -159,27 +170,25 @@ static uint32_t clip_segment(const tl_feature *ref, const tl_feature *inc, int r
     float inverse = 1.0f / tl_dot(ref->normal, outward);
     talus_vec3 along = tl_sub(inc->point[1], inc->point[0]);
     uint32_t count = 0;
-    measure(ref, ref_is_a, n, inverse, margin, tl_mad(inc->point[0], low, along), low_id, out, &count);
+    measure(ref, f->ref_is_a, n, inverse, margin, tl_mad(inc->point[0], low, along), low_id, out, &count);
     if (high > low) {
-        measure(ref, ref_is_a, n, inverse, margin, tl_mad(inc->point[0], high, along), high_id, out, &count);
+        measure(ref, f->ref_is_a, n, inverse, margin, tl_mad(inc->point[0], high, along), high_id, out, &count);
     }
     return count;
 }
 
 /* A point over the reference. */
-static uint32_t clip_point(const tl_feature *ref, const tl_feature *inc, int ref_is_a, talus_vec3 n, float margin,
-                           float slack, tl_candidate *out) {
-    talus_vec3 outward = ref_is_a ? n : tl_neg(n);
+static uint32_t clip_point(const feature_pair *f, talus_vec3 n, float margin, float slack, tl_candidate *out) {
+    const tl_feature *ref = f->ref;
+    talus_vec3 outward = f->ref_is_a ? n : tl_neg(n), p = f->inc->point[0];
     for (uint32_t i = 0; i < ref->count; ++i) {
-        talus_vec3 side;
-        float offset = side_plane(ref, i, outward, slack, &side);
-        if (tl_dot(side, inc->point[0]) + offset < 0.0f) {
+        side_plane side = side_of(ref, i, outward, slack);
+        if (side_distance(&side, p) < -side.band) {
             return 0;
         }
     }
-    uint32_t count = 0;
-    measure(ref, ref_is_a, n, 1.0f / tl_dot(ref->normal, outward), margin, inc->point[0],
-            tl_point_id(ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A, inc->vertex[0], 0), out, &count);
+    uint32_t count = 0, id = tl_point_id(f->ref_is_a ? TL_ID_VERTEX_B : TL_ID_VERTEX_A, f->inc->vertex[0], 0);
+    measure(ref, f->ref_is_a, n, 1.0f / tl_dot(ref->normal, outward), margin, p, id, out, &count);
     return count;
 }
 
@@ -260,7 +269,8 @@ static uint32_t add_rim(const tl_core *core, const tl_feature *ref, int ref_is_a
     point.count = 1;
     point.point[0] = tl_core_support(core, ref_is_a ? tl_neg(n) : n, &index);
     point.vertex[0] = RIM_ID;
-    if (clip_point(ref, &point, ref_is_a, n, margin, tolerance, &own) == 0) {
+    feature_pair f = {ref, &point, ref_is_a};
+    if (clip_point(&f, n, margin, tolerance, &own) == 0) {
         return count;
     }
     return tl_candidates_add(&own, tolerance, c, count);
@@ -279,15 +289,15 @@ static uint32_t meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, flo
         b_face = !a_face;
     }
     if (a_face || b_face) {
-        const tl_feature *ref = a_face ? a : b, *inc = a_face ? b : a;
-        if (tl_abs(tl_dot(ref->normal, n)) < 0.1f) {
+        feature_pair f = {a_face ? a : b, a_face ? b : a, a_face};
+        if (tl_abs(tl_dot(f.ref->normal, n)) < 0.1f) {
             count = 0;
-        } else if (inc->count >= 3) {
-            count = clip_polygon(ref, inc, a_face, n, margin, c);
-        } else if (inc->count == 2) {
-            count = clip_segment(ref, inc, a_face, n, margin, c);
+        } else if (f.inc->count >= 3) {
+            count = clip_polygon(&f, n, margin, c);
+        } else if (f.inc->count == 2) {
+            count = clip_segment(&f, n, margin, c);
         } else {
-            count = clip_point(ref, inc, a_face, n, margin, tolerance, c);
+            count = clip_point(&f, n, margin, tolerance, c);
         }
     } else if (a->count == 2 && b->count == 2) {
         tl_candidate own;
@@ -305,28 +315,27 @@ void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch 
     tl_candidates_write(c, meet(a, b, touch->normal, margin, tolerance, c), touch, out);
 }
 
-void tl_manifold_meet(const tl_core *a, const tl_core *b, const tl_touch *touch, float margin, tl_manifold *out) {
-    tl_candidate c[MAX_CLIP];
-    tl_feature fa, fb;
-    talus_vec3 n = touch->normal, back = tl_neg(n);
+void tl_manifold_meet(const tl_core *a, const tl_core *b, tl_feature *fa, tl_feature *fb, const tl_touch *touch,
+                      float margin, tl_manifold *out) {
+    tl_candidate c[MAX_CLIP], own;
+    talus_vec3 n = touch->normal;
     float tolerance = tl_touch_tolerance(a, b);
-    tl_feature_find(a, n, 1, &fa);
-    tl_feature_find(b, back, fa.count < 3, &fb);
-    if (fa.count < 3 && fb.count >= 3) {
-        tl_feature_find(a, n, 0, &fa);
+    if (fa->count < 3 && fb->count >= 3) {
+        tl_feature_find(a, n, 0, fa);
+    } else if (fb->count < 3 && fa->count >= 3) {
+        tl_feature_find(b, tl_neg(n), 0, fb);
     }
-    uint32_t count = meet(&fa, &fb, n, margin, tolerance, c);
-    if (fa.count >= 3 && fb.count >= 3) {
-        int a_is_ref = face_is_reference(&fa, &fb, n);
+    uint32_t count = meet(fa, fb, n, margin, tolerance, c);
+    if (fa->count >= 3 && fb->count >= 3) {
+        int a_is_ref = face_is_reference(fa, fb, n);
         const tl_core *inc = a_is_ref ? b : a;
         if (inc->kind == TL_CORE_FRUSTUM) {
-            count = add_rim(inc, a_is_ref ? &fa : &fb, a_is_ref, n, margin, tolerance, c, count);
+            count = add_rim(inc, a_is_ref ? fa : fb, a_is_ref, n, margin, tolerance, c, count);
         }
     }
-    tl_candidate own;
     own.p = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
     own.gap = touch->separation;
-    own.id = touch_id(&fa, &fb);
+    own.id = touch_id(fa, fb);
     count = tl_candidates_add(&own, tolerance, c, count);
     tl_candidates_write(c, count, touch, out);
 }

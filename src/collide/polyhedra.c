@@ -65,6 +65,7 @@ int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pa
     float known = tl_core_separation(a, b, n, &ia, &ib, &va, &vb);
     out->count = 0;
     out->normal = n;
+    out->gap = known;
     if (known > margin) {
         tl_cache_keep_axis(cache, n);
         return 1;
@@ -86,6 +87,7 @@ int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pa
         tl_cache_keep_axis(cache, n);
         out->normal = n;
         if (axis.separation > margin) {
+            out->gap = axis.separation;
             return 1;
         }
         axis_manifold(&pa, &pb, &axis, margin, tolerance, out);

@@ -1,5 +1,5 @@
-/* The layout of a convex hull's blob: this header, then its arrays, each at a 32-byte aligned offset from the blob's start.
- * The half-edges 2k and 2k + 1 are twins. Faces are convex polygons, counter-clockwise seen from outside. */
+/* The layout of a convex hull's blob: this header, then its arrays, each at a 32-byte aligned offset from the blob's
+ * start. The half-edges 2k and 2k + 1 are twins. Faces are convex polygons, counter-clockwise seen from outside. */
 #ifndef TL_HULL_H
 #define TL_HULL_H
 
@@ -13,18 +13,19 @@ struct talus_hull {
     uint32_t bytes;    /* of the whole blob, a multiple of 32 */
     uint32_t checksum; /* of all bytes after this header's first 16 */
     uint32_t vertex_count, face_count, half_edge_count;
-    uint32_t vertices;    /* offset: x[], y[], z[], each of vertex_stride floats, padded by repeating the last vertex */
-    uint32_t planes;      /* offset: nx[], ny[], nz[], d[], each of face_stride floats, padded by repeating the last; n.p = d */
-    uint32_t vertex_edge; /* offset: u16[vertex_count], a half-edge that leaves each vertex */
-    uint32_t face_edge;   /* offset: u16[face_count], a half-edge of each face */
-    uint32_t edges;       /* offset: tl_half_edge[half_edge_count] */
+    uint32_t vertices; /* offset: x[], y[], z[], each of vertex_stride floats, padded by repeating the last vertex */
+    uint32_t
+        planes; /* offset: nx[], ny[], nz[], d[], each of face_stride floats, padded by repeating the last; n.p = d */
+    uint32_t vertex_edge;                /* offset: u16[vertex_count], a half-edge that leaves each vertex */
+    uint32_t face_edge;                  /* offset: u16[face_count], a half-edge of each face */
+    uint32_t edges;                      /* offset: tl_half_edge[half_edge_count] */
     uint32_t vertex_stride, face_stride; /* multiples of 8 */
-    float volume;             /* m^3 */
-    talus_vec3 centroid;      /* m */
-    float inertia[6];         /* xx yy zz xy xz yz about the centroid at density 1, m^5 */
-    talus_aabb bounds;        /* m */
-    float inner_radius;       /* m: of the ball around the centroid that fits inside */
-    float outer_radius;       /* m: of the ball around the centroid that holds it */
+    float volume;                        /* m^3 */
+    talus_vec3 centroid;                 /* m */
+    float inertia[6];                    /* xx yy zz xy xz yz about the centroid at density 1, m^5 */
+    talus_aabb bounds;                   /* m */
+    float inner_radius;                  /* m: of the ball around the centroid that fits inside */
+    float outer_radius;                  /* m: of the ball around the centroid that holds it */
     uint32_t reserved[1];
 };
 

@@ -1,5 +1,5 @@
-/* The laned kernels of the stages and the choice among instruction sets. Every kernel works on a range [first, last) and
- * gives the same bits however the range is cut. */
+/* The laned kernels of the stages and the choice among instruction sets. Every kernel works on a range [first, last)
+ * and gives the same bits however the range is cut. */
 #ifndef TL_KERNELS_H
 #define TL_KERNELS_H
 
@@ -9,20 +9,22 @@
 typedef struct tl_step {
     tl_header *h;
     const void *geometry;
-    float dt, sub;     /* s: of the step, of a sub-step */
-    float inverse_sub; /* 1/s */
-    float warm_scale;  /* this sub-step over the one that the stored impulses come from */
+    float dt, sub;                              /* s: of the step, of a sub-step */
+    float inverse_sub;                          /* 1/s */
+    float warm_scale;                           /* this sub-step over the one that the stored impulses come from */
     float bias_rate, mass_scale, impulse_scale; /* of soft contacts */
-    uint32_t rows;     /* body rows in use, the still one included, rounded up to eight */
+    uint32_t rows;                              /* body rows in use, the still one included, rounded up to eight */
     int any_locks;
-    int first_pass;    /* the first pass over the contacts in this step */
+    int pushes;     /* something is deep enough, or tied by joints, to be pushed */
+    int first_pass; /* the first pass over the contacts in this step */
 } tl_step;
 
 typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);
 
 typedef struct tl_kernels {
-    tl_kernel velocity, position, push;                     /* ranges of eight body rows */
-    tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, bounce_contacts, store_contacts; /* groups */
+    tl_kernel velocity, position, push; /* ranges of eight body rows */
+    tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, bounce_contacts,
+        store_contacts;                                                                         /* groups */
     tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */
 } tl_kernels;
 

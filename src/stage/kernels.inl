@@ -1,16 +1,17 @@
-/* All laned kernels, once for the lanes that the including file has chosen; it defines TL_KERNELS as the table's name. */
+/* All laned kernels, once for the lanes that the including file has chosen; it defines TL_KERNELS as the table's name.
+ */
 #include "stage/kernels.h"
 
 #include "base/vec_lanes.h"
 
+#include "stage/motion/motion.inl"
 #include "stage/row/contact_rows.inl"
 #include "stage/row/joint_rows.inl"
 #include "stage/solve/contacts.inl"
 #include "stage/solve/joints.inl"
-#include "stage/motion/motion.inl"
 
 const tl_kernels TL_KERNELS = {
-    velocity,       position,        push,           prepare_contacts, warm_contacts,
-    solve_contacts, relax_contacts, push_contacts,   bounce_contacts, store_contacts,  begin_joints,
-    turn_joints,    solve_joints,    relax_joints,   push_joints,    store_joints,
+    velocity,      position,        push,           prepare_contacts, warm_contacts, solve_contacts, relax_contacts,
+    push_contacts, bounce_contacts, store_contacts, begin_joints,     turn_joints,   solve_joints,   relax_joints,
+    push_joints,   store_joints,
 };

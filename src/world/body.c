@@ -87,8 +87,8 @@ talus_status talus_body_create(talus_world *world, const talus_body_def *def, ta
     uint32_t generation = meta->generation + 1u;
     memset(meta, 0, sizeof *meta);
     meta->generation = generation ? generation : 1u;
-    meta->flags = (uint32_t)def->type | TL_BODY_ALIVE | (def->can_sleep ? TL_BODY_CAN_SLEEP : 0u) |
-                  def->locks << TL_BODY_LOCKS;
+    meta->flags =
+        (uint32_t)def->type | TL_BODY_ALIVE | (def->can_sleep ? TL_BODY_CAN_SLEEP : 0u) | def->locks << TL_BODY_LOCKS;
     meta->first_shape = meta->first_contact = meta->first_joint = meta->sleep_next = meta->free_next = TL_NONE;
     talus_pose pose = {def->pose.position, tl_quat_normalize(def->pose.rotation)};
     memset(&tl_body_pose(h)[i], 0, sizeof(tl_row8));

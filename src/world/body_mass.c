@@ -14,10 +14,28 @@
 /* Principal inertias closer than this share have no gyroscopic term worth its time. */
 #define ROUND 1e-5f
 
+/* m: no point of the shape is further from the frame's origin. Exact for balls and boxes. */
 static float reach_of(const tl_convex *shape, const talus_pose *place) {
+    const talus_geometry *g = &shape->geometry;
+    if (g->type == TALUS_SPHERE) {
+        return tl_length(place->position) + g->radius;
+    }
+    if (g->type == TALUS_CAPSULE) {
+        talus_vec3 up = tl_rotate(place->rotation, tl_v(0.0f, g->half_height, 0.0f));
+        return tl_max(tl_length(tl_add(place->position, up)) + g->radius_top,
+                      tl_length(tl_sub(place->position, up)) + g->radius_bottom);
+    }
+    if (g->type == TALUS_BOX) {
+        talus_mat3 m = tl_mat3_from_quat(place->rotation);
+        talus_vec3 own = tl_abs3(tl_mat3_mul_t(&m, place->position));
+        return tl_length(tl_add(own, g->half));
+    }
     talus_aabb box = tl_convex_aabb(shape, place);
-    talus_vec3 far = tl_max3(tl_abs3(box.lower), tl_abs3(box.upper));
-    return tl_length(far);
+    float corner = tl_length(tl_max3(tl_abs3(box.lower), tl_abs3(box.upper)));
+    if (g->type == TALUS_HULL) {
+        corner = tl_min(corner, tl_length(tl_pose_point(place, shape->hull->centroid)) + shape->hull->outer_radius);
+    }
+    return corner;
 }
 
 /* Places the body's shapes in the mass frame. */
@@ -127,7 +145,8 @@ talus_status talus_body_get_mass(const talus_world *world, talus_body body, talu
     return status;
 }
 
-/* Symmetric, with a non-negative diagonal, and no moment larger than the sum of the two others by more than rounding. */
+/* Symmetric, with a non-negative diagonal, and no moment larger than the sum of the two others by more than rounding.
+ */
 static int is_inertia(const talus_mat3 *m) {
     float scale = tl_max(m->x.x, tl_max(m->y.y, m->z.z)), slack = 1e-4f * scale;
     return m->x.x >= 0.0f && m->y.y >= 0.0f && m->z.z >= 0.0f && tl_abs(m->x.y - m->y.x) <= slack &&

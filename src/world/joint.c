@@ -93,8 +93,8 @@ static talus_status check_def(const talus_joint_def *d) {
         status = check_range(0.0f, d->cone_angle, d->cone_stiffness, d->cone_damping);
     }
     if (status == TALUS_OK && d->distance_enabled) {
-        status = check_range(tl_max(d->distance_lower, 0.0f), d->distance_upper, d->distance_stiffness,
-                             d->distance_damping);
+        status =
+            check_range(tl_max(d->distance_lower, 0.0f), d->distance_upper, d->distance_stiffness, d->distance_damping);
     }
     return status;
 }
@@ -156,8 +156,8 @@ static void compile_ranges(tl_joint_record *j) {
         if (!axis_counts(j, i) || a->mode == TALUS_AXIS_FREE || (is_locked(a) && is_hard(a))) {
             continue;
         }
-        tl_joint_param p = range_param(a->lower, a->mode == TALUS_AXIS_LOCKED ? a->lower : a->upper, a->stiffness,
-                                       a->damping);
+        tl_joint_param p =
+            range_param(a->lower, a->mode == TALUS_AXIS_LOCKED ? a->lower : a->upper, a->stiffness, a->damping);
         add_row(j, axis_type(j, i), TL_ROW_RANGE, &p);
     }
     if (j->cone_axis != TL_NONE) {
@@ -165,7 +165,8 @@ static void compile_ranges(tl_joint_record *j) {
         add_row(j, TL_ROW_CONE + j->cone_axis, TL_ROW_RANGE, &p);
     }
     if (j->distance_enabled && !(j->distance_lower == j->distance_upper && j->distance_stiffness == 0.0f)) {
-        tl_joint_param p = range_param(j->distance_lower, j->distance_upper, j->distance_stiffness, j->distance_damping);
+        tl_joint_param p =
+            range_param(j->distance_lower, j->distance_upper, j->distance_stiffness, j->distance_damping);
         add_row(j, TL_ROW_DISTANCE, TL_ROW_RANGE, &p);
     }
 }
@@ -186,7 +187,12 @@ static void compile(tl_joint_record *j) {
     for (uint32_t i = 0; i < 6u; i++) {
         const tl_joint_drive_record *d = &j->drive[i];
         if (d->enabled) {
-            tl_joint_param p = {d->position,  d->position, d->stiffness, d->damping, d->speed, d->most > 0.0f ? d->most : FAR,
+            tl_joint_param p = {d->position,
+                                d->position,
+                                d->stiffness,
+                                d->damping,
+                                d->speed,
+                                d->most > 0.0f ? d->most : FAR,
                                 d->acceleration ? 1.0f : 0.0f};
             add_row(j, i < 3u ? TL_ROW_LINEAR + i : TL_ROW_ANGULAR + i - 3u, TL_ROW_DRIVE, &p);
         }
@@ -201,8 +207,10 @@ static tl_joint_axis_record store_axis(const talus_axis *a) {
 }
 
 static tl_joint_drive_record store_drive(const talus_drive *d) {
-    tl_joint_drive_record r = {d->enabled ? 1u : 0u, d->acceleration ? 1u : 0u, d->position_target, d->velocity_target,
-                               d->stiffness,         d->damping,                d->max_force};
+    tl_joint_drive_record r = {d->enabled ? 1u : 0u, d->acceleration ? 1u : 0u,
+                               d->position_target,   d->velocity_target,
+                               d->stiffness,         d->damping,
+                               d->max_force};
     return r;
 }
 
@@ -322,7 +330,8 @@ static talus_axis load_axis(const tl_joint_axis_record *r) {
 }
 
 static talus_drive load_drive(const tl_joint_drive_record *r) {
-    talus_drive d = {(uint8_t)r->enabled, (uint8_t)r->acceleration, r->position, r->speed, r->stiffness, r->damping, r->most};
+    talus_drive d = {
+        (uint8_t)r->enabled, (uint8_t)r->acceleration, r->position, r->speed, r->stiffness, r->damping, r->most};
     return d;
 }
 

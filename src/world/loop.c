@@ -1,4 +1,5 @@
-/* The fixed-timestep driver: an accumulator with a cap against the spiral of death (Fiedler, "Fix your timestep!", 2004). */
+/* The fixed-timestep driver: an accumulator with a cap against the spiral of death (Fiedler, "Fix your timestep!",
+ * 2004). */
 #include "talus/loop.h"
 
 #include "base/vec.h"

@@ -57,7 +57,7 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->inverse_sub = 1.0f / step->sub;
     step->warm_scale = h->settings.substep > 0.0f ? step->sub / h->settings.substep : 1.0f;
     step->rows = 0;
-    step->any_locks = step->first_pass = 0;
+    step->any_locks = step->first_pass = step->pushes = 0;
     h->settings.substep = step->sub;
     set_softness(step);
     tl_events_begin(h);
@@ -86,7 +86,7 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     k->position(step, 0, step->rows);
     watch_lap(w, TALUS_STAGE_POSITION);
     k->turn_joints(step, 0, joints);
-    if (joints || contacts) {
+    if (step->pushes) {
         k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
         k->push(step, 0, step->rows);
@@ -108,13 +108,15 @@ static void solve(tl_step *step, watch *w) {
     tl_stage_contact_groups(step);
     tl_stage_joint_groups(step);
     k->prepare_contacts(step, 0, h->groups);
+    uint32_t bouncing = 0;
+    step->pushes = h->joint_groups > 0;
+    for (uint32_t i = 0; i < h->groups; i++) {
+        bouncing |= tl_group_pool(h)[i].bounces;
+        step->pushes |= tl_group_pool(h)[i].deep != 0;
+    }
     watch_lap(w, TALUS_STAGE_ROWS);
     for (uint32_t i = 0; i < h->settings.substeps; i++) {
         run_substep(step, k, i == 0, w);
-    }
-    uint32_t bouncing = 0;
-    for (uint32_t i = 0; i < h->groups; i++) {
-        bouncing |= tl_group_pool(h)[i].bounces;
     }
     if (bouncing) {
         k->bounce_contacts(step, 0, h->groups);

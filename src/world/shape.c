@@ -131,7 +131,8 @@ void tl_shape_remove(tl_header *h, uint32_t i) {
     }
     *at = meta->next;
     if (meta->node != TL_NONE) {
-        tl_tree_remove(h, tl_body_type(&tl_bodies(h)[body]) == TALUS_STATIC ? TL_TREE_STILL : TL_TREE_MOVING, meta->node);
+        tl_tree_remove(h, tl_body_type(&tl_bodies(h)[body]) == TALUS_STATIC ? TL_TREE_STILL : TL_TREE_MOVING,
+                       meta->node);
     }
     tl_shape_unmark_moved(h, i);
     h->event_shapes -= (meta->flags & (TL_SHAPE_SENSOR | TL_SHAPE_EVENTS)) != 0;

@@ -32,8 +32,8 @@ const char *talus_status_text(talus_status status) {
 }
 
 static const char *const STAGE_NAMES[TALUS_STAGE_COUNT] = {
-    "commands", "refit",       "pairs", "narrow", "islands", "rows",  "velocity", "solve",
-    "position", "relax",       "restitution", "ccd", "commit", "sleep", "events",
+    "commands", "refit", "pairs",       "narrow", "islands", "rows",  "velocity", "solve",
+    "position", "relax", "restitution", "ccd",    "commit",  "sleep", "events",
 };
 
 const char *talus_stage_name(talus_stage stage) {
@@ -73,9 +73,12 @@ static talus_status check_def(const talus_world_def *d) {
         !capacity_fits(d->joint_capacity) || !capacity_fits(d->contact_capacity) || !capacity_fits(d->event_capacity)) {
         return TALUS_BAD_ARGUMENT;
     }
-    const float numbers[] = {d->contact_hertz,     d->contact_damping_ratio, d->push_speed, d->speculative_margin,
-                             d->recycle_slack,     d->restitution_speed,     d->hit_speed,  d->sleep_speed,
-                             d->sleep_time,        d->gravity.x,             d->gravity.y,  d->gravity.z};
+    const float numbers[] = {d->contact_hertz, d->contact_damping_ratio,
+                             d->push_speed,    d->speculative_margin,
+                             d->recycle_slack, d->restitution_speed,
+                             d->hit_speed,     d->sleep_speed,
+                             d->sleep_time,    d->gravity.x,
+                             d->gravity.y,     d->gravity.z};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         if (!tl_is_finite(numbers[i])) {
             return TALUS_NOT_FINITE;

@@ -59,7 +59,7 @@ static inline d3 d_rotate_back(const d_pose *p, d3 v) {
 }
 
 /* The support value: how far the shape reaches along d (its own frame). */
-static double d_reach(const tl_convex *s, d3 d) {
+static inline double d_reach(const tl_convex *s, d3 d) {
     const talus_geometry *g = &s->geometry;
     double radial = sqrt(d.x * d.x + d.z * d.z), length = d3_length(d);
     double h = (double)g->half_height, rt = (double)g->radius_top, rb = (double)g->radius_bottom;
@@ -86,7 +86,7 @@ static double d_reach(const tl_convex *s, d3 d) {
 
 /* How far a point of the shape's frame is outside of its surface: exact in and near to it for round shapes, a lower
  * bound outside of corners for boxes and hulls. */
-static double d_outside(const tl_convex *s, d3 p) {
+static inline double d_outside(const tl_convex *s, d3 p) {
     const talus_geometry *g = &s->geometry;
     double h = (double)g->half_height, rt = (double)g->radius_top, rb = (double)g->radius_bottom;
     double radial = sqrt(p.x * p.x + p.z * p.z);
@@ -119,7 +119,7 @@ static double d_outside(const tl_convex *s, d3 p) {
     }
 }
 
-static double d_size(const tl_convex *s) {
+static inline double d_size(const tl_convex *s) {
     double r = 0.0;
     for (int i = 0; i < 6; ++i) {
         d3 d = d3_make(i % 3 == 0 ? 1.0 : 0.0, i % 3 == 1 ? 1.0 : 0.0, i % 3 == 2 ? 1.0 : 0.0);
@@ -134,12 +134,12 @@ typedef struct d_pair {
 } d_pair;
 
 /* The separation along the unit vector n from a to b. */
-static double d_separation(const d_pair *p, d3 n) {
+static inline double d_separation(const d_pair *p, d3 n) {
     d3 back = d_rotate_back(&p->pose, d3_scale(n, -1.0));
     return d3_dot(n, p->pose.t) - d_reach(p->b, back) - d_reach(p->a, n);
 }
 
-static double d_climb(const d_pair *p, d3 *n, double step, double until) {
+static inline double d_climb(const d_pair *p, d3 *n, double step, double until) {
     double best = d_separation(p, *n);
     while (step > until) {
         d3 u = d3_unit(d3_cross(*n, fabs(n->x) < 0.6 ? d3_make(1.0, 0.0, 0.0) : d3_make(0.0, 1.0, 0.0)));
@@ -162,7 +162,7 @@ static double d_climb(const d_pair *p, d3 *n, double step, double until) {
 }
 
 /* The greatest separation over all directions, found from many starts. */
-static double d_best_separation(const tl_convex *a, const tl_convex *b, const talus_pose *pose, d3 *normal) {
+static inline double d_best_separation(const tl_convex *a, const tl_convex *b, const talus_pose *pose, d3 *normal) {
     d_pair p;
     p.a = a;
     p.b = b;
@@ -215,7 +215,7 @@ typedef struct d_poly {
 } d_poly;
 
 /* The shape as a polyhedron and a radius, placed; 0 if it is none. */
-static int d_poly_of(const tl_convex *s, const d_pose *pose, d_poly *p) {
+static inline int d_poly_of(const tl_convex *s, const d_pose *pose, d_poly *p) {
     const talus_geometry *g = &s->geometry;
     memset(p, 0, sizeof *p);
     if (g->type == TALUS_SPHERE) {
@@ -272,7 +272,7 @@ static int d_poly_of(const tl_convex *s, const d_pose *pose, d_poly *p) {
     return 1;
 }
 
-static void d_try(const d_poly *a, const d_poly *b, d3 n, double *best, d3 *at) {
+static inline void d_try(const d_poly *a, const d_poly *b, d3 n, double *best, d3 *at) {
     double l = d3_length(n);
     if (!(l > 1e-12)) {
         return;
@@ -297,7 +297,8 @@ static void d_try(const d_poly *a, const d_poly *b, d3 n, double *best, d3 *at) 
 
 /* The greatest separation, over every direction that can be the one: faces, pairs of edges, and between the points
  * nearest to one another. Returns 0 for other shapes. */
-static int d_exact_separation(const tl_convex *sa, const tl_convex *sb, const talus_pose *pose, double *best, d3 *at) {
+static inline int d_exact_separation(const tl_convex *sa, const tl_convex *sb, const talus_pose *pose, double *best,
+                                     d3 *at) {
     static d_poly a, b;
     d_pose where = d_pose_of(pose);
     if (!d_poly_of(sa, NULL, &a) || !d_poly_of(sb, &where, &b)) {
@@ -353,9 +354,16 @@ static inline uint32_t brute_u32(void) {
 static inline float brute_range(float low, float high) {
     return low + (high - low) * ((float)(brute_u32() >> 8) / 16777216.0f);
 }
+/* Arguments of one call may be worked out in any order, so that each draw has a statement of its own. */
+static inline talus_vec3 brute_vector(float low, float high) {
+    float x = brute_range(low, high);
+    float y = brute_range(low, high);
+    float z = brute_range(low, high);
+    return tl_v(x, y, z);
+}
 static inline talus_vec3 brute_direction(void) {
     for (;;) {
-        talus_vec3 v = tl_v(brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f));
+        talus_vec3 v = brute_vector(-1.0f, 1.0f);
         float l2 = tl_length2(v);
         if (l2 > 0.01f && l2 < 1.0f) {
             return tl_normalize_or(v, v);
@@ -363,9 +371,17 @@ static inline talus_vec3 brute_direction(void) {
     }
 }
 static inline talus_quat brute_rotation(void) {
-    talus_quat q = {brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f), brute_range(-1.0f, 1.0f),
-                    brute_range(-1.0f, 1.0f)};
+    talus_vec3 v = brute_vector(-1.0f, 1.0f);
+    float w = brute_range(-1.0f, 1.0f);
+    talus_quat q = {v.x, v.y, v.z, w};
     return tl_quat_normalize(q);
+}
+static inline talus_pose brute_pose(float near, float far) {
+    talus_vec3 d = brute_direction();
+    float distance = brute_range(near, far);
+    talus_quat q = brute_rotation();
+    talus_pose p = {tl_scale(d, distance), q};
+    return p;
 }
 
 static inline void brute_seed(const char *name) {
@@ -374,23 +390,34 @@ static inline void brute_seed(const char *name) {
     printf("%s: seed %llu (TALUS_SEED)\n", name, (unsigned long long)brute_state);
 }
 
-/* A hull of about `count` vertices on a ball or, flattened, an ellipsoid; in memory that is never freed. */
+/* Hulls live as long as the program; each block begins with the address of the one before. */
+static void *brute_blocks;
+
+static inline const talus_hull *brute_hull_of(const talus_vec3 *points, uint32_t count) {
+    size_t scratch_size = talus_hull_scratch_size(count), max = talus_hull_max_size(count), size = 0;
+    unsigned char *scratch = malloc(scratch_size + 64u), *out = malloc(max + 128u);
+    unsigned char *aligned = scratch + (64u - (uintptr_t)scratch % 64u) % 64u;
+    memcpy(out, &brute_blocks, sizeof brute_blocks);
+    brute_blocks = out;
+    out += 128u - (uintptr_t)out % 64u;
+    talus_status status = talus_hull_build(points, count, aligned, scratch_size, out, max, &size);
+    free(scratch);
+    if (status != TALUS_OK) {
+        printf("hull of %u points: status %d\n", count, (int)status);
+        abort();
+    }
+    return (const talus_hull *)(const void *)out;
+}
+
+/* A hull of about `count` vertices on an ellipsoid. */
 static inline const talus_hull *brute_hull(uint32_t count, talus_vec3 scale) {
     talus_vec3 *points = malloc(count * sizeof *points);
     for (uint32_t i = 0; i < count; ++i) {
         points[i] = tl_mul(brute_direction(), scale);
     }
-    size_t scratch_size = talus_hull_scratch_size(count), max = talus_hull_max_size(count), size = 0;
-    void *scratch = aligned_alloc(64, (scratch_size + 63u) / 64u * 64u);
-    void *out = aligned_alloc(64, (max + 63u) / 64u * 64u);
-    talus_status status = talus_hull_build(points, count, scratch, scratch_size, out, max, &size);
-    free(scratch);
+    const talus_hull *hull = brute_hull_of(points, count);
     free(points);
-    if (status != TALUS_OK) {
-        printf("hull of %u points: status %d\n", count, (int)status);
-        abort();
-    }
-    return out;
+    return hull;
 }
 
 enum { BRUTE_SPHERE, BRUTE_CAPSULE, BRUTE_TAPERED, BRUTE_CYLINDER, BRUTE_CONE, BRUTE_BOX, BRUTE_HULL, BRUTE_KINDS };
@@ -408,7 +435,7 @@ static inline tl_convex brute_shape(int kind, float low, float high) {
     if (kind == BRUTE_CONE && (brute_u32() & 3u) == 0) {
         g->radius_top = 0.0f;
     }
-    g->half = tl_v(brute_range(low, high), brute_range(low, high), brute_range(low, high));
+    g->half = brute_vector(low, high);
     switch (kind) {
     case BRUTE_SPHERE:
         g->type = TALUS_SPHERE;

@@ -102,7 +102,8 @@ static void one_pair(int ka, int kb, float low, float high, float margin, float 
         pose.rotation = tl_quat_identity();
     }
     float reach = (float)(d_size(&a) + d_size(&b));
-    pose.position = tl_scale(brute_direction(), brute_range(0.0f, spread * reach));
+    talus_vec3 direction = brute_direction();
+    pose.position = tl_scale(direction, brute_range(0.0f, spread * reach));
     snprintf(name, sizeof name, "%s-%s seed %llu", brute_kind_name[ka], brute_kind_name[kb], (unsigned long long)state);
     d3 n;
     double expected;

@@ -73,7 +73,7 @@ others() {
     done
     echo "aarch64-clang-O2|clang --target=aarch64-linux-gnu|-O2|qemu-aarch64"
     # whole-program optimisation sees through the borders of files
-    echo "gcc-O3-lto|gcc|-O3 -flto -ffat-lto-objects|"
+    echo "gcc-O3-lto|gcc|-O3 -flto|"
     # -march=native brings FMA, which must not be used
     echo "gcc-native|gcc|-O3 -march=native|"
     echo "clang-native|clang|-O3 -march=native|"

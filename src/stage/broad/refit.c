@@ -26,15 +26,21 @@ talus_aabb tl_shape_box(const tl_header *h, const void *geometry, uint32_t shape
     return tl_convex_aabb(&convex, &pose);
 }
 
+static float margin_of(const tl_header *h, uint32_t shape) {
+    return tl_min(FAT_MARGIN, FAT_SHARE * tl_shape_place(h)[shape].f[7]);
+}
+
 static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
     const tl_shape_meta *meta = &tl_shapes(h)[shape];
     if (tl_body_type(&tl_bodies(h)[meta->body]) == TALUS_STATIC) {
         return *box;
     }
-    float margin = tl_min(FAT_MARGIN, FAT_SHARE * tl_shape_place(h)[shape].f[7]) + h->settings.speculative_margin;
+    float margin = margin_of(h, shape) + h->settings.speculative_margin;
     talus_vec3 m = tl_v(margin, margin, margin);
-    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[meta->body]), FAT_STEPS * dt), zero = tl_v(0.0f, 0.0f, 0.0f);
-    talus_aabb fat = {tl_add(tl_sub(box->lower, m), tl_min3(way, zero)), tl_add(tl_add(box->upper, m), tl_max3(way, zero))};
+    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[meta->body]), FAT_STEPS * dt),
+               zero = tl_v(0.0f, 0.0f, 0.0f);
+    talus_aabb fat = {tl_add(tl_sub(box->lower, m), tl_min3(way, zero)),
+                      tl_add(tl_add(box->upper, m), tl_max3(way, zero))};
     return fat;
 }
 
@@ -47,15 +53,24 @@ static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt)
     talus_aabb fat = fattened(h, shape, box, dt);
     meta->node = tl_tree_insert(h, tree, shape, &fat);
     tl_row_set6(&tl_shape_fat(h)[shape], fat.lower, fat.upper);
+    meta->motion = tl_body_motion(h)[meta->body];
     h->counters.proxies_refit++;
 }
 
-/* Whether the shape at its pose, and on the way of the coming step, is still within its fat box. A ball around the shape is
- * asked first, which needs no rotation. */
+/* Whether a body's motion since a shape was entered, and that of the coming step, are within the fat box's margin
+ * whatever their direction: the cheap answer, which needs no box. */
+static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, float dt) {
+    uint32_t moved = tl_body_motion(h)[body] - tl_shapes(h)[shape].motion;
+    float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
+    return (float)moved * 1e-6f + way < margin_of(h, shape);
+}
+
+/* Whether the shape at its pose, and on the way of the coming step, is still within its fat box. */
 static int is_within(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
     const tl_row8 *fat = &tl_shape_fat(h)[shape];
     talus_aabb outer = {tl_row_xyz(fat), tl_row_345(fat)};
-    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[tl_shapes(h)[shape].body]), dt), zero = tl_v(0.0f, 0.0f, 0.0f);
+    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[tl_shapes(h)[shape].body]), dt),
+               zero = tl_v(0.0f, 0.0f, 0.0f);
     float m = h->settings.speculative_margin;
     talus_vec3 margin = tl_v(m, m, m);
     talus_aabb swept = {tl_add(tl_sub(box->lower, margin), tl_min3(way, zero)),
@@ -73,7 +88,7 @@ void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t body = tl_awake_body(h)[k];
         for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
-            if (tl_shapes(h)[s].flags & TL_SHAPE_MOVED) {
+            if ((tl_shapes(h)[s].flags & TL_SHAPE_MOVED) || has_hardly_moved(h, body, s, dt)) {
                 continue;
             }
             talus_aabb box = tl_shape_box(h, geometry, s);

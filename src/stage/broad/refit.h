@@ -1,5 +1,5 @@
-/* Refit: the boxes of what moved. A shape has a fat box in its tree and is looked at again only when its own box has left
- * it. */
+/* Refit: the boxes of what moved. A shape has a fat box in its tree and is looked at again only when its own box has
+ * left it. */
 #ifndef TL_REFIT_H
 #define TL_REFIT_H
 

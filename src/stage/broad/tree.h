@@ -1,7 +1,7 @@
 /* A dynamic tree of boxes: binary, leaves are shapes, kept low by the surface area heuristic and rotations.
  *
- * Source: Goldsmith and Salmon, "Automatic creation of object hierarchies for ray tracing", IEEE CG&A 7(5), 1987 (the cost);
- * Kopta et al., "Fast, effective BVH updates for animated scenes", I3D 2012 (rotations). */
+ * Source: Goldsmith and Salmon, "Automatic creation of object hierarchies for ray tracing", IEEE CG&A 7(5), 1987 (the
+ * cost); Kopta et al., "Fast, effective BVH updates for animated scenes", I3D 2012 (rotations). */
 #ifndef TL_TREE_H
 #define TL_TREE_H
 
@@ -22,8 +22,8 @@ static inline int tl_aabb_contains(const talus_aabb *outer, const talus_aabb *in
            inner->upper.x <= outer->upper.x && inner->upper.y <= outer->upper.y && inner->upper.z <= outer->upper.z;
 }
 
-/* A walk over the leaves that overlap a box: tl_tree_next gives shapes until TL_NONE. It climbs by the parents' links and
- * so needs no stack and no bound on the height. The tree must not change in between. */
+/* A walk over the leaves that overlap a box: tl_tree_next gives shapes until TL_NONE. It climbs by the parents' links
+ * and so needs no stack and no bound on the height. The tree must not change in between. */
 typedef struct tl_tree_walk {
     talus_aabb box;
     uint32_t node; /* to look at next */

@@ -1,12 +1,11 @@
-/* Commit: what the sub-steps made of the awake bodies goes back to the state, with the count of how far each one moved. */
+/* Commit: what the sub-steps made of the awake bodies goes back to the state, with the count of how far each one moved.
+ */
 #include <string.h>
 
 #include "stage/stages.h"
 
 /* Micrometres, rounded up, so that what creeps is seen in the end. */
-static uint32_t micrometres(float way) {
-    return way > 0.0f ? 1u + (uint32_t)tl_min(way * 1e6f, 1e9f) : 0u;
-}
+static uint32_t micrometres(float way) { return way > 0.0f ? 1u + (uint32_t)tl_min(way * 1e6f, 1e9f) : 0u; }
 
 /* The way of the body's farthest point, at most. */
 static uint32_t motion_between(const tl_row8 *before, const tl_row8 *now, float reach) {
@@ -27,7 +26,8 @@ static int is_sound(const tl_row8 *pose, const tl_row8 *velocity) {
     return sum == 0.0f;
 }
 
-/* In free flight the sub-steps' sum is ahead of the parabola by a h dt / 2; a body that nothing held gives that back. */
+/* In free flight the sub-steps' sum is ahead of the parabola by a h dt / 2; a body that nothing held gives that back.
+ */
 static void fall_exactly(const tl_step *step, uint32_t row, tl_row8 *pose) {
     if (tl_row_moved(step->h)[row].f[7] != 0.0f) {
         return;
@@ -41,7 +41,8 @@ static void fall_exactly(const tl_step *step, uint32_t row, tl_row8 *pose) {
     }
 }
 
-/* The angular momentum to go on from, and the spin in v that it means at the new pose; empty without a gyroscopic term. */
+/* The angular momentum to go on from, and the spin in v that it means at the new pose; empty without a gyroscopic term.
+ */
 static tl_row8 kept_momentum(const tl_header *h, uint32_t body, uint32_t row, const tl_row8 *pose, tl_row8 *v) {
     const tl_row8 *rf = &tl_row_frame(h)[row], *m = &tl_row_momentum(h)[row], *rv = &tl_row_velocity(h)[row];
     tl_row8 kept;

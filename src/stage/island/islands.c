@@ -1,4 +1,5 @@
-/* Islands by union-find (Tarjan 1975) with path halving; the root is the lowest index, so it does not depend on the order. */
+/* Islands by union-find (Tarjan 1975) with path halving; the root is the lowest index, so it does not depend on the
+ * order. */
 #include "stage/island/islands.h"
 
 #include <string.h>

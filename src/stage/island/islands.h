@@ -4,8 +4,8 @@
 
 #include "stage/store/lists.h"
 
-/* Counts how long each body has been slow; finds the islands only if some body has been so long enough, and puts to sleep
- * those in which all have. O(awake bodies), with O(awake contacts) when something may sleep. */
+/* Counts how long each body has been slow; finds the islands only if some body has been so long enough, and puts to
+ * sleep those in which all have. O(awake bodies), with O(awake contacts) when something may sleep. */
 void tl_stage_sleep(tl_header *h, float dt);
 
 /* Puts the island of an awake dynamic body to sleep, however fast it is. */

@@ -1,8 +1,8 @@
 /* The motion of bodies within a sub-step, eight rows at a time.
  *
- * velocity: forces and damping, then the impulses of the last sub-step once more. As the rows' Jacobians stay the same over
- * a step, what these impulses did to a body's velocity is known without them: it is the change since its forces were
- * applied. So warm starting takes no pass over the constraints.
+ * velocity: forces and damping, then the impulses of the last sub-step once more. As the rows' Jacobians stay the same
+ * over a step, what these impulses did to a body's velocity is known without them: it is the change since its forces
+ * were applied. So warm starting takes no pass over the constraints.
  *
  * position: the centre by the velocity, the rotation by the exponential map. Where the principal inertias differ, the
  * rotation is the implicit midpoint step of Euler's equations: with the angular momentum L fixed in the world, the mean
@@ -35,9 +35,7 @@ static inline q8 exp_half(v8 r) {
     return q8_of(v.x, v.y, v.z, c);
 }
 
-static inline tl_f8 cut(tl_f8 x) {
-    return tl_f8_max(tl_f8_min(x, tl_f8_set1(MOST_SPEED)), tl_f8_set1(-MOST_SPEED));
-}
+static inline tl_f8 cut(tl_f8 x) { return tl_f8_max(tl_f8_min(x, tl_f8_set1(MOST_SPEED)), tl_f8_set1(-MOST_SPEED)); }
 
 /* The rotation vector h w, no longer than MOST_TURN. */
 static inline v8 turn_of(v8 w, tl_f8 h) {

@@ -1,5 +1,5 @@
-/* Narrow: from pairs of shapes to manifolds. The state of a pair is its manifold with the features that made it, and how far
- * both bodies had gone by then: what moved less than the slack since is not looked at. */
+/* Narrow: from pairs of shapes to manifolds. The state of a pair is its manifold with the features that made it, and
+ * how far both bodies had gone by then: what moved less than the slack since is not looked at. */
 #include <string.h>
 
 #include "stage/broad/refit.h"
@@ -91,6 +91,36 @@ static talus_pose shape_pose(const tl_header *h, uint32_t body, uint32_t shape) 
     return tl_pose_mul(&b, &place);
 }
 
+/* What a pair may move, in micrometres, before it has to be looked at again although it is `gap` (m) apart: half of
+ * what is left, so that a pair that was not looked at cannot have closed the rest within one more step. */
+static uint32_t slack_of_gap(const tl_header *h, float gap) {
+    float free = 0.5f * (gap - h->settings.speculative_margin);
+    return free > 0.0f ? (uint32_t)tl_min(free * 1e6f, 1e9f) : 0u;
+}
+
+/* m: how far the balls around two bodies' mass centres are apart, at least. */
+static float ball_gap(const tl_header *h, const tl_contact_meta *meta) {
+    const tl_row8 *a = &tl_body_pose(h)[meta->body_a], *b = &tl_body_pose(h)[meta->body_b];
+    const tl_body_inertia *in = tl_body_inertias(h);
+    return tl_length(tl_sub(tl_row_xyz(b), tl_row_xyz(a))) - in[meta->body_a].reach - in[meta->body_b].reach;
+}
+
+static void note_made(tl_header *h, tl_contact_meta *meta, int touches, float gap) {
+    const uint32_t *motion = tl_body_motion(h);
+    int touched = (meta->flags & TL_CONTACT_TOUCHING) != 0;
+    meta->motion = motion[meta->body_a] + motion[meta->body_b];
+    meta->slack = touches ? (uint32_t)(h->settings.recycle_slack * 1e6f) : slack_of_gap(h, gap);
+    if (touches && meta->flags & TL_CONTACT_SENSOR) {
+        meta->slack = 0;
+    }
+    meta->flags &= ~(uint32_t)TL_CONTACT_FRESH;
+    if (touches && !touched) {
+        begin_touch(h, meta);
+    } else if (!touches && touched) {
+        end_touch(h, meta);
+    }
+}
+
 static void make_manifold(tl_step *step, uint32_t c) {
     tl_header *h = step->h;
     tl_contact_meta *meta = &tl_contacts(h)[c];
@@ -102,16 +132,28 @@ static void make_manifold(tl_step *step, uint32_t c) {
     tl_manifold m;
     tl_collide(&a, &b, &b_in_a, margin_of(step, meta), &tl_contact_caches(h)[c], &m);
     store_manifold(h, c, &m, &b_in_a, &pa, &pb);
-    const uint32_t *motion = tl_body_motion(h);
-    meta->motion = motion[meta->body_a] + motion[meta->body_b];
-    meta->slack = meta->flags & TL_CONTACT_SENSOR ? 0u : (uint32_t)(h->settings.recycle_slack * 1e6f);
-    meta->flags &= ~(uint32_t)TL_CONTACT_FRESH;
-    int touches = m.count > 0, touched = (meta->flags & TL_CONTACT_TOUCHING) != 0;
-    if (touches && !touched) {
-        begin_touch(h, meta);
-    } else if (!touches && touched) {
-        end_touch(h, meta);
+    note_made(h, meta, m.count > 0, m.gap);
+}
+
+/* Whether the balls around the bodies tell already that they do not touch. */
+static int parted_by_balls(tl_step *step, uint32_t c) {
+    tl_header *h = step->h;
+    tl_contact_meta *meta = &tl_contacts(h)[c];
+    if (!tl_body_is_dynamic(h, meta->body_a) || !tl_body_is_dynamic(h, meta->body_b)) {
+        return 0; /* what is not dynamic tends to be large */
     }
+    float gap = ball_gap(h, meta);
+    if (!(gap > margin_of(step, meta))) {
+        return 0;
+    }
+    if (meta->count > 0) {
+        tl_manifold none;
+        memset(&none, 0, sizeof none);
+        talus_pose here = tl_pose_identity();
+        store_manifold(h, c, &none, &here, &here, &here);
+    }
+    note_made(h, meta, 0, gap);
+    return 1;
 }
 
 void tl_stage_narrow(tl_step *step) {
@@ -134,7 +176,9 @@ void tl_stage_narrow(tl_step *step) {
             n->pairs_ended++;
             continue; /* another contact stands at k now */
         }
-        make_manifold(step, c);
+        if (!parted_by_balls(step, c)) {
+            make_manifold(step, c);
+        }
         n->manifolds_made++;
         k++;
     }

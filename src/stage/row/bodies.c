@@ -1,5 +1,5 @@
-/* Body rows: what the solver reads and writes of the awake bodies, one 32-byte row a column each. Row 0 stands for all that
- * does not move. */
+/* Body rows: what the solver reads and writes of the awake bodies, one 32-byte row a column each. Row 0 stands for all
+ * that does not move. */
 #include <string.h>
 
 #include "base/eigen.h"
@@ -17,8 +17,8 @@ static void rest_row(tl_header *h, uint32_t row) {
     tl_row_frame(h)[row].f[3] = 1.0f;
 }
 
-/* K of a body that may not turn about some world axes: the inertia's block of the free axes, inverted, in principal axes.
- * The block is padded with a moment so large that its inverse is nothing. */
+/* K of a body that may not turn about some world axes: the inertia's block of the free axes, inverted, in principal
+ * axes. The block is padded with a moment so large that its inverse is nothing. */
 static void locked_frame(const tl_header *h, uint32_t body, uint32_t locks, talus_quat *frame, talus_vec3 *s) {
     const float *own = tl_body_inertias(h)[body].s;
     talus_mat3 axes = tl_mat3_from_quat(tl_row_quat(&tl_body_pose(h)[body]));
@@ -29,7 +29,8 @@ static void locked_frame(const tl_header *h, uint32_t body, uint32_t locks, talu
     }
     talus_mat3 scaled = {tl_scale(axes.x, moment[0]), tl_scale(axes.y, moment[1]), tl_scale(axes.z, moment[2])};
     talus_mat3 back = tl_mat3_transpose(&axes), world = tl_mat3_mat(&scaled, &back);
-    float m[3][3] = {{world.x.x, world.y.x, world.z.x}, {world.x.y, world.y.y, world.z.y}, {world.x.z, world.y.z, world.z.z}};
+    float m[3][3] = {
+        {world.x.x, world.y.x, world.z.x}, {world.x.y, world.y.y, world.z.y}, {world.x.z, world.y.z, world.z.z}};
     for (int k = 0; k < 3; k++) {
         if (locks & (uint32_t)TALUS_LOCK_ANGULAR_X << k) {
             for (int j = 0; j < 3; j++) {

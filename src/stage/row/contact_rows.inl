@@ -4,12 +4,15 @@
  * Friction acts at the manifold's centre, as a vector in the tangent plane and a torque about the normal: three rows a
  * manifold instead of two a point. */
 
+/* m: overlap beyond is more than the solver's spring should be left with. */
+#define PUSH_DEPTH 4e-3f
+
 /* Weight of a point that is far apart, against one that touches, in the manifold's centre. */
 #define FAR_WEIGHT 1e-3f
 
 typedef struct contact_bodies {
-    v8 xa, xb;   /* centres of mass */
-    q8 qa, qb;   /* principal axes */
+    v8 xa, xb; /* centres of mass */
+    q8 qa, qb; /* principal axes */
     k8 ka, kb;
     v8 va, ua, vb, ub;
     tl_f8 ma, mb; /* inverse masses */
@@ -66,6 +69,7 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
     tl_f8 counts = tl_f8_loadu(count), zero = tl_f8_zero(), one = tl_f8_set1(1.0f), sum = zero, ways = zero;
     tl_f8 fade = tl_f8_set1(1.0f / tl_max(step->h->settings.speculative_margin, 1e-6f));
     v8 sum_a = v8_zero(), sum_b = v8_zero(), arms[4];
+    tl_m8 deep = tl_m8_zero();
     tl_f8 weights[4];
     for (uint32_t p = 0; p < g->points; p++) {
         tl_contact_lane_point *out = &g->point[p];
@@ -79,6 +83,7 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
         v8_store(out->ja[0], ja);
         v8_store(out->jb[0], jb);
         tl_f8_store(out->gap, gap);
+        deep = tl_m8_or(deep, tl_m8_and(used, tl_f8_lt(gap, tl_f8_set1(-0.75f * PUSH_DEPTH))));
         tl_f8_store(out->mass, tl_f8_and_mask(used, mass));
         tl_f8_store(out->impulse, tl_f8_and_mask(used, tl_f8_mul(r[6], tl_f8_set1(step->warm_scale))));
         tl_f8_store(out->peak, zero);
@@ -91,6 +96,7 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
         sum_a = v8_mad(sum_a, weights[p], ra);
         sum_b = v8_mad(sum_b, weights[p], rb);
     }
+    g->deep = (uint32_t)tl_m8_any(deep);
     tl_f8 scale = inverse_or_zero(sum);
     *center_a = v8_scale(sum_a, scale);
     *center_b = v8_scale(sum_b, scale);
@@ -101,8 +107,8 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
     *lever = tl_f8_mul(ways, scale);
 }
 
-/* From the speed of approach when the step began to the one at which the surfaces meet, gaining or losing what gravity does
- * over the gap: v^2 = v0^2 + 2 a s. */
+/* From the speed of approach when the step began to the one at which the surfaces meet, gaining or losing what gravity
+ * does over the gap: v^2 = v0^2 + 2 a s. */
 static void prepare_bounce(const tl_step *step, tl_contact_group *g, v8 n) {
     tl_f8 r[8], zero = tl_f8_zero();
     const float *forces = tl_row_force(step->h)->f;

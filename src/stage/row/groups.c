@@ -1,5 +1,6 @@
-/* Groups: constraints that may be solved side by side, eight at a time. Within a colour no two share a moving body, so the
- * lanes of a group write to different rows. What found no colour is packed as it comes, as long as nothing is shared. */
+/* Groups: constraints that may be solved side by side, eight at a time. Within a colour no two share a moving body, so
+ * the lanes of a group write to different rows. What found no colour is packed as it comes, as long as nothing is
+ * shared. */
 #include <string.h>
 
 #include "stage/stages.h"
@@ -71,7 +72,8 @@ void tl_stage_contact_groups(tl_step *step) {
         uint32_t c = tl_contact_order(h)[k];
         const tl_contact_meta *m = &metas[c];
         uint32_t a = rows[m->body_a], b = rows[m->body_b];
-        int shared = g && m->color == TL_COLORS && (holds_row(g->a, g->b, g->lanes, a) || holds_row(g->a, g->b, g->lanes, b));
+        int shared =
+            g && m->color == TL_COLORS && (holds_row(g->a, g->b, g->lanes, a) || holds_row(g->a, g->b, g->lanes, b));
         colors += m->color != color;
         if (!g || m->color != color || g->lanes == TL_LANES || shared) {
             g = open_group(h);

@@ -1,8 +1,8 @@
-/* Joint rows: eight joints of one kind at a time become Jacobians, errors and effective masses. They are made anew after every
- * change of the poses, so that a joint neither stretches nor gains energy while its bodies turn: half of the impulse that
- * bends a body's path acts before it moves, along the old rows, and half after, along the new ones, as in RATTLE
- * (Andersen, "RATTLE: a velocity version of SHAKE", J. Comput. Phys. 52, 1983). The first half is foreseen by the curve of
- * the anchors' paths, w x (w x r) h / 2.
+/* Joint rows: eight joints of one kind at a time become Jacobians, errors and effective masses. They are made anew
+ * after every change of the poses, so that a joint neither stretches nor gains energy while its bodies turn: half of
+ * the impulse that bends a body's path acts before it moves, along the old rows, and half after, along the new ones, as
+ * in RATTLE (Andersen, "RATTLE: a velocity version of SHAKE", J. Comput. Phys. 52, 1983). The first half is foreseen by
+ * the curve of the anchors' paths, w x (w x r) h / 2.
  *
  * Angles are read off the relative quaternion: the twist about an axis is 2 atan2(q_axis, w), the swing of that axis
  * 2 atan2(|q_others|, |(q_axis, w)|) (Dobrowolski, "Swing-twist decomposition in Clifford algebra", 2015). */

@@ -1,14 +1,13 @@
-/* Contacts solved eight manifolds at a time by projected Gauss-Seidel on impulses: Coulomb's cone at the manifold's centre, friction
- * about the normal, rolling resistance, and the normal impulses point by point.
+/* Contacts solved eight manifolds at a time by projected Gauss-Seidel on impulses: Coulomb's cone at the manifold's
+ * centre, friction about the normal, rolling resistance, and the normal impulses point by point.
  *
- * Soft constraints in sub-steps (Catto, "Soft constraints", GDC 2011, and "Solver2D", 2024): the pass before the move takes
- * overlap back as a damped spring, the pass after it takes the speed of that out again. The spring is what keeps a tall
- * stack upright: Gauss-Seidel needs a number of passes that grows with the fourth power of the height to stop it from
- * bending, and until it is there only a force that grows with the overlap does. */
+ * Soft constraints in sub-steps (Catto, "Soft constraints", GDC 2011, and "Solver2D", 2024): the pass before the move
+ * takes overlap back as a damped spring, the pass after it takes the speed of that out again. The spring is what keeps
+ * a tall stack upright: Gauss-Seidel needs a number of passes that grows with the fourth power of the height to stop it
+ * from bending, and until it is there only a force that grows with the overlap does. */
 
-/* Overlap beyond PUSH_DEPTH (m) is more than the spring should be left with: PUSH_SHARE of the excess is taken back in a
- * sub-step as a displacement that leaves no speed behind, so that the bottom of a deep pile does not give way. */
-#define PUSH_DEPTH 4e-3f
+/* Of overlap beyond PUSH_DEPTH this share is taken back in a sub-step as a displacement that leaves no speed behind, so
+ * that the bottom of a deep pile does not give way. */
 #define PUSH_SHARE 0.6f
 
 /* The velocities of eight pairs of bodies, or their displacements. */
@@ -153,8 +152,8 @@ static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_
     }
 }
 
-/* Friction is bounded by the pressure of a pass without bias, for the spring's own is too low until it has given way: before
- * the move that is the one of the last sub-step, or in a new contact none yet. */
+/* Friction is bounded by the pressure of a pass without bias, for the spring's own is too low until it has given way:
+ * before the move that is the one of the last sub-step, or in a new contact none yet. */
 static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int with_bias) {
     int friction_first = with_bias && !step->first_pass;
     pair_velocity p;
@@ -190,6 +189,9 @@ static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     tl_f8 most = tl_f8_set1(step->h->settings.push_speed * step->sub);
     for (uint32_t k = first; k < last; k++) {
         const tl_contact_group *g = &tl_group_pool(step->h)[k];
+        if (!g->deep) {
+            continue;
+        }
         pair_velocity p;
         tl_f8 r[8];
         load_pair(pushes, g->a, g->b, &p);

@@ -1,11 +1,11 @@
-/* Joints solved eight at a time: drives, then limits, each row by projected Gauss-Seidel, then all equalities of a joint at
- * once by their factored matrix. Velocities and errors are kept apart: the
- * velocity passes know no error, and a share of it is taken back as displacements that leave no speed behind (the split of
- * Guendelman, Bridson and Fedkiw, "Nonconvex rigid bodies with stacking", SIGGRAPH 2003), so that a chain gains no energy
- * from what its passes leave unsolved. */
+/* Joints solved eight at a time: drives, then limits, each row by projected Gauss-Seidel, then all equalities of a
+ * joint at once by their factored matrix. Velocities and errors are kept apart: the velocity passes know no error, and
+ * a share of it is taken back as displacements that leave no speed behind (the split of Guendelman, Bridson and Fedkiw,
+ * "Nonconvex rigid bodies with stacking", SIGGRAPH 2003), so that a chain gains no energy from what its passes leave
+ * unsolved. */
 
 /* The share of an error that a sub-step takes back. */
-#define JOINT_SHARE 0.4f
+#define JOINT_SHARE 0.5f
 
 static inline tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int linear) {
     v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
@@ -21,8 +21,8 @@ static inline void joint_apply(pair_velocity *p, const tl_joint_row *row, int li
     }
 }
 
-/* An implicit spring and damper, bounded in force: softness g = 1 / (h (c + h k)), speed it seeks (k e + c v) / (c + h k)
- * (Catto, "Soft constraints", GDC 2011). */
+/* An implicit spring and damper, bounded in force: softness g = 1 / (h (c + h k)), speed it seeks (k e + c v) / (c + h
+ * k) (Catto, "Soft constraints", GDC 2011). */
 static void solve_drive(const tl_step *step, pair_velocity *p, tl_joint_row *row, int linear) {
     tl_f8 h = tl_f8_set1(step->sub), one = tl_f8_set1(1.0f), mass = tl_f8_load(row->mass);
     tl_f8 scale = tl_f8_select(tl_f8_gt(tl_f8_load(row->per_mass), tl_f8_zero()), mass, one);
@@ -41,7 +41,8 @@ static void solve_drive(const tl_step *step, pair_velocity *p, tl_joint_row *row
     joint_apply(p, row, linear, tl_f8_sub(now, old));
 }
 
-/* How far inside the nearer side of a range a joint is, and which side that is: 1 for the lower, -1 for the upper one. */
+/* How far inside the nearer side of a range a joint is, and which side that is: 1 for the lower, -1 for the upper one.
+ */
 static inline tl_f8 range_gap(const tl_joint_row *row, tl_f8 *sign) {
     tl_m8 low = tl_f8_gt(tl_f8_load(row->at_lower), tl_f8_zero());
     tl_f8 error = tl_f8_load(row->error);
@@ -174,8 +175,8 @@ static void begin_joints(const tl_step *step, uint32_t first, uint32_t last) {
     }
 }
 
-/* Rows after the poses changed. The next sub-step starts from the present impulses along the new rows and not the old ones:
- * the velocity that they are reckoned from is moved by the difference. */
+/* Rows after the poses changed. The next sub-step starts from the present impulses along the new rows and not the old
+ * ones: the velocity that they are reckoned from is moved by the difference. */
 static void turn_joints(const tl_step *step, uint32_t first, uint32_t last) {
     float *befores = tl_row_before(step->h)->f;
     for (uint32_t i = first; i < last; i++) {

@@ -1,79 +1,80 @@
 /* The column table: every array of the block, in the order in which they lie in it.
  *
- * X(name, type, count, stage, life, word): `count` names a capacity, `stage` the one stage that writes the column during a
- * step, `life` whether it is part of the state (STATE: hashed, compared, saved) or lives for one step (STEP), `word` the
- * bytes of its members, which are all of one size so that the hash does not depend on the byte order. */
+ * X(name, type, count, stage, life, word): `count` names a capacity, `stage` the one stage that writes the column
+ * during a step, `life` whether it is part of the state (STATE: hashed, compared, saved), can be found anew from it
+ * (INDEX) or lives for one step (STEP), `word` the bytes of its members, which are all of one size so that the hash
+ * does not depend on the byte order. */
 #ifndef TL_COLUMNS_H
 #define TL_COLUMNS_H
 
-#include "stage/store/rows.h"
 #include "stage/store/records.h"
+#include "stage/store/rows.h"
 
-#define TL_COLUMNS(X)                                                    \
-    /* bodies */                                                         \
-    X(body_pose, tl_row8, BODY, COMMIT, STATE, 4)                        \
-    X(body_velocity, tl_row8, BODY, COMMIT, STATE, 4)                    \
-    X(body_momentum, tl_row8, BODY, COMMIT, STATE, 4)                    \
-    X(body_previous, tl_row8, BODY, COMMIT, STATE, 4)                    \
-    X(body_inertias, tl_body_inertia, BODY, COMMANDS, STATE, 4)           \
-    X(body_frame, tl_row8, BODY, COMMANDS, STATE, 4)                     \
-    X(body_force, tl_row8, BODY, COMMANDS, STATE, 4)                     \
-    X(body_motion, uint32_t, BODY, COMMIT, STATE, 4)                     \
-    X(bodies, tl_body_meta, BODY, COMMANDS, STATE, 4)                 \
-    X(body_quiets, tl_body_quiet, BODY, SLEEP, STATE, 4)                  \
-    X(body_colors, uint64_t, BODY, ISLANDS, STATE, 8)                    \
-    X(body_mass, talus_mass, BODY, COMMANDS, STATE, 4)                   \
-    X(body_user, uint64_t, BODY, COMMANDS, STATE, 8)                     \
-    X(body_row, uint32_t, BODY, SLEEP, STATE, 4)                         \
-    X(awake_body, uint32_t, BODY, SLEEP, STATE, 4)                       \
-    /* shapes */                                                         \
-    X(shape_place, tl_row8, SHAPE, COMMANDS, STATE, 4)                   \
-    X(shape_fat, tl_row8, SHAPE, REFIT, STATE, 4)                        \
-    X(shape_geometry, talus_geometry, SHAPE, COMMANDS, STATE, 4)         \
-    X(shapes, tl_shape_meta, SHAPE, COMMANDS, STATE, 4)              \
-    X(shape_material, tl_material, SHAPE, COMMANDS, STATE, 4)            \
-    X(shape_category, uint64_t, SHAPE, COMMANDS, STATE, 8)               \
-    X(shape_mask, uint64_t, SHAPE, COMMANDS, STATE, 8)                   \
-    X(shape_pose, talus_pose, SHAPE, COMMANDS, STATE, 4)                 \
-    X(shape_user, uint64_t, SHAPE, COMMANDS, STATE, 8)                   \
-    X(nodes, tl_tree_node, NODE, REFIT, STATE, 4)                    \
-    X(moved_shape, uint32_t, SHAPE, REFIT, STATE, 4)                     \
-    /* contacts */                                                       \
-    X(heads, tl_contact_head, CONTACT, NARROW, STATE, 4)          \
-    X(points, tl_contact_points, CONTACT, NARROW, STATE, 4)       \
-    X(contacts, tl_contact_meta, CONTACT, NARROW, STATE, 4)          \
-    X(contact_caches, tl_pair_cache, CONTACT, NARROW, STATE, 4)           \
-    X(contact_materials, tl_contact_material, CONTACT, NARROW, STATE, 4)  \
-    X(contact_links, tl_contact_link, CONTACT, PAIRS, STATE, 4)           \
-    X(awake_contact, uint32_t, CONTACT, PAIRS, STATE, 4)                 \
-    X(pair_slot, uint32_t, SLOT, PAIRS, STATE, 4)                        \
-    /* joints */                                                         \
-    X(joints, tl_joint_record, JOINT, COMMANDS, STATE, 4)          \
-    X(joint_states, tl_joint_state, JOINT, COMMIT, STATE, 4)              \
-    X(joint_user, uint64_t, JOINT, COMMANDS, STATE, 8)                   \
-    X(awake_joint, uint32_t, JOINT, SLEEP, STATE, 4)                     \
-    /* one step's rows */                                                \
-    X(row_velocity, tl_row8, ROW, VELOCITY, STEP, 4)                     \
-    X(row_before, tl_row8, ROW, VELOCITY, STEP, 4)                       \
-    X(row_moved, tl_row8, ROW, POSITION, STEP, 4)                        \
-    X(row_momentum, tl_row8, ROW, POSITION, STEP, 4)                     \
-    X(row_push, tl_row8, ROW, POSITION, STEP, 4)                         \
-    X(row_pose, tl_row8, ROW, POSITION, STEP, 4)                         \
-    X(row_frame, tl_row8, ROW, ROWS, STEP, 4)                            \
-    X(row_force, tl_row8, ROW, ROWS, STEP, 4)                            \
-    X(island_parent, uint32_t, BODY, ISLANDS, STEP, 4)                   \
-    X(island_quiet, float, BODY, ISLANDS, STEP, 4)                    \
-    X(contact_order, uint32_t, CONTACT, ROWS, STEP, 4)                   \
-    X(group_pool, tl_contact_group, GROUP, ROWS, STEP, 4)            \
-    X(joint_order, uint32_t, JOINT, ROWS, STEP, 4)                       \
-    X(joint_group_pool, tl_joint_group, JOINTGROUP, ROWS, STEP, 4)           \
-    X(joint_row_pool, tl_joint_row, JOINTROW, ROWS, STEP, 4)                 \
-    /* what a step tells */                                              \
-    X(event_begin, talus_contact_event, EVENT, EVENTS, STEP, 4)          \
-    X(event_end, talus_contact_event, EVENT, EVENTS, STEP, 4)            \
-    X(event_hit, talus_hit_event, EVENT, EVENTS, STEP, 4)                \
-    X(event_sensor_begin, talus_sensor_event, EVENT, EVENTS, STEP, 4)    \
-    X(event_sensor_end, talus_sensor_event, EVENT, EVENTS, STEP, 4)      \
+#define TL_COLUMNS(X)                                                                                                  \
+    /* bodies */                                                                                                       \
+    X(body_pose, tl_row8, BODY, COMMIT, STATE, 4)                                                                      \
+    X(body_velocity, tl_row8, BODY, COMMIT, STATE, 4)                                                                  \
+    X(body_momentum, tl_row8, BODY, COMMIT, STATE, 4)                                                                  \
+    X(body_previous, tl_row8, BODY, COMMIT, STATE, 4)                                                                  \
+    X(body_inertias, tl_body_inertia, BODY, COMMANDS, STATE, 4)                                                        \
+    X(body_frame, tl_row8, BODY, COMMANDS, STATE, 4)                                                                   \
+    X(body_force, tl_row8, BODY, COMMANDS, STATE, 4)                                                                   \
+    X(body_motion, uint32_t, BODY, COMMIT, STATE, 4)                                                                   \
+    X(bodies, tl_body_meta, BODY, COMMANDS, STATE, 4)                                                                  \
+    X(body_quiets, tl_body_quiet, BODY, SLEEP, STATE, 4)                                                               \
+    X(body_colors, uint64_t, BODY, ISLANDS, STATE, 8)                                                                  \
+    X(body_mass, talus_mass, BODY, COMMANDS, STATE, 4)                                                                 \
+    X(body_user, uint64_t, BODY, COMMANDS, STATE, 8)                                                                   \
+    X(body_row, uint32_t, BODY, SLEEP, STATE, 4)                                                                       \
+    X(awake_body, uint32_t, BODY, SLEEP, STATE, 4)                                                                     \
+    /* shapes */                                                                                                       \
+    X(shape_place, tl_row8, SHAPE, COMMANDS, STATE, 4)                                                                 \
+    X(shape_fat, tl_row8, SHAPE, REFIT, STATE, 4)                                                                      \
+    X(shape_geometry, talus_geometry, SHAPE, COMMANDS, STATE, 4)                                                       \
+    X(shapes, tl_shape_meta, SHAPE, COMMANDS, STATE, 4)                                                                \
+    X(shape_material, tl_material, SHAPE, COMMANDS, STATE, 4)                                                          \
+    X(shape_category, uint64_t, SHAPE, COMMANDS, STATE, 8)                                                             \
+    X(shape_mask, uint64_t, SHAPE, COMMANDS, STATE, 8)                                                                 \
+    X(shape_pose, talus_pose, SHAPE, COMMANDS, STATE, 4)                                                               \
+    X(shape_user, uint64_t, SHAPE, COMMANDS, STATE, 8)                                                                 \
+    X(nodes, tl_tree_node, NODE, REFIT, STATE, 4)                                                                      \
+    X(moved_shape, uint32_t, SHAPE, REFIT, STATE, 4)                                                                   \
+    /* contacts */                                                                                                     \
+    X(heads, tl_contact_head, CONTACT, NARROW, STATE, 4)                                                               \
+    X(points, tl_contact_points, CONTACT, NARROW, STATE, 4)                                                            \
+    X(contacts, tl_contact_meta, CONTACT, NARROW, STATE, 4)                                                            \
+    X(contact_caches, tl_pair_cache, CONTACT, NARROW, STATE, 4)                                                        \
+    X(contact_materials, tl_contact_material, CONTACT, NARROW, STATE, 4)                                               \
+    X(contact_links, tl_contact_link, CONTACT, PAIRS, STATE, 4)                                                        \
+    X(awake_contact, uint32_t, CONTACT, PAIRS, STATE, 4)                                                               \
+    X(pair_slot, uint32_t, SLOT, PAIRS, INDEX, 4)                                                                      \
+    /* joints */                                                                                                       \
+    X(joints, tl_joint_record, JOINT, COMMANDS, STATE, 4)                                                              \
+    X(joint_states, tl_joint_state, JOINT, COMMIT, STATE, 4)                                                           \
+    X(joint_user, uint64_t, JOINT, COMMANDS, STATE, 8)                                                                 \
+    X(awake_joint, uint32_t, JOINT, SLEEP, STATE, 4)                                                                   \
+    /* one step's rows */                                                                                              \
+    X(row_velocity, tl_row8, ROW, VELOCITY, STEP, 4)                                                                   \
+    X(row_before, tl_row8, ROW, VELOCITY, STEP, 4)                                                                     \
+    X(row_moved, tl_row8, ROW, POSITION, STEP, 4)                                                                      \
+    X(row_momentum, tl_row8, ROW, POSITION, STEP, 4)                                                                   \
+    X(row_push, tl_row8, ROW, POSITION, STEP, 4)                                                                       \
+    X(row_pose, tl_row8, ROW, POSITION, STEP, 4)                                                                       \
+    X(row_frame, tl_row8, ROW, ROWS, STEP, 4)                                                                          \
+    X(row_force, tl_row8, ROW, ROWS, STEP, 4)                                                                          \
+    X(island_parent, uint32_t, BODY, ISLANDS, STEP, 4)                                                                 \
+    X(island_quiet, float, BODY, ISLANDS, STEP, 4)                                                                     \
+    X(contact_order, uint32_t, CONTACT, ROWS, STEP, 4)                                                                 \
+    X(group_pool, tl_contact_group, GROUP, ROWS, STEP, 4)                                                              \
+    X(joint_order, uint32_t, JOINT, ROWS, STEP, 4)                                                                     \
+    X(joint_group_pool, tl_joint_group, JOINTGROUP, ROWS, STEP, 4)                                                     \
+    X(joint_row_pool, tl_joint_row, JOINTROW, ROWS, STEP, 4)                                                           \
+    /* what a step tells */                                                                                            \
+    X(event_begin, talus_contact_event, EVENT, EVENTS, STEP, 4)                                                        \
+    X(event_end, talus_contact_event, EVENT, EVENTS, STEP, 4)                                                          \
+    X(event_hit, talus_hit_event, EVENT, EVENTS, STEP, 4)                                                              \
+    X(event_sensor_begin, talus_sensor_event, EVENT, EVENTS, STEP, 4)                                                  \
+    X(event_sensor_end, talus_sensor_event, EVENT, EVENTS, STEP, 4)                                                    \
     X(event_broken, talus_joint_event, EVENT, EVENTS, STEP, 4)
 
 #endif

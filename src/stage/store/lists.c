@@ -53,6 +53,15 @@ static void pair_remove(tl_header *h, uint32_t contact) {
     slots[i] = 0;
 }
 
+void tl_pairs_rebuild(tl_header *h) {
+    memset(tl_pair_slot(h), 0, h->capacity[TL_COUNT_SLOT] * sizeof(uint32_t));
+    for (uint32_t i = 0; i < h->contacts.high; i++) {
+        if (tl_contacts(h)[i].flags & TL_CONTACT_ALIVE) {
+            pair_insert(h, i);
+        }
+    }
+}
+
 /* --- colours ---------------------------------------------------------------------------------- */
 
 uint32_t tl_color_take(tl_header *h, uint32_t body_a, uint32_t body_b) {

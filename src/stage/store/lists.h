@@ -7,6 +7,9 @@
 /* Pair table: open addressing over pair_slot, which holds the contact's index plus one. */
 uint32_t tl_pair_find(const tl_header *h, uint32_t shape_a, uint32_t shape_b); /* TL_NONE if there is none */
 
+/* Fills the table anew from the living contacts. O(contacts + slots). */
+void tl_pairs_rebuild(tl_header *h);
+
 /* A contact of two shapes (a < b), not yet evaluated; TL_NONE if the capacity is used up. It is awake if a body is. */
 uint32_t tl_contact_make(tl_header *h, uint32_t shape_a, uint32_t shape_b);
 void tl_contact_end(tl_header *h, uint32_t contact);

@@ -52,7 +52,7 @@ typedef struct tl_shape_meta {
     uint32_t node;                          /* in the tree */
     int32_t group;
     float density;
-    uint32_t reserved;
+    uint32_t motion; /* the body's count when the fat box was made */
 } tl_shape_meta;
 
 typedef struct tl_material {
@@ -62,7 +62,7 @@ typedef struct tl_material {
 
 typedef struct tl_tree_node {
     talus_aabb box;
-    uint32_t parent; /* in the free list: the next one */
+    uint32_t parent;   /* in the free list: the next one */
     uint32_t child[2]; /* child[0] TL_NONE: a leaf, child[1] then is the shape */
     uint32_t height;   /* 0 for a leaf */
 } tl_tree_node;
@@ -146,7 +146,7 @@ typedef struct tl_joint_record {
     uint32_t next[2], previous[2]; /* as in tl_contact_link */
     uint32_t color, awake_index, free_next;
     uint32_t rows, fixed, code[TL_JOINT_ROWS];
-    uint32_t free_axis; /* the one angular axis beside two locked ones, or TL_NONE */
+    uint32_t free_axis;          /* the one angular axis beside two locked ones, or TL_NONE */
     talus_pose place_a, place_b; /* the frames in the mass frames */
     talus_pose frame_a, frame_b; /* as the caller gave them */
     tl_joint_axis_record axis[6];

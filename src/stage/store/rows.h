@@ -1,8 +1,8 @@
 /* What the solver streams: body rows of 32 bytes and constraint groups eight lanes wide.
  *
- * Angular velocities are whitened: with the inverse inertia I^-1 = K^T K a body's row holds u, where w = K^T u. An angular
- * Jacobian is then j = K (r x n), used alike to read a velocity (j . u) and to apply an impulse (u += j lambda), so that no
- * inertia is needed in the solver's loop. K = diag(s) R^T with R the frame's rotation. */
+ * Angular velocities are whitened: with the inverse inertia I^-1 = K^T K a body's row holds u, where w = K^T u. An
+ * angular Jacobian is then j = K (r x n), used alike to read a velocity (j . u) and to apply an impulse (u += j
+ * lambda), so that no inertia is needed in the solver's loop. K = diag(s) R^T with R the frame's rotation. */
 #ifndef TL_ROWS_H
 #define TL_ROWS_H
 
@@ -35,22 +35,23 @@ typedef struct tl_contact_lane_point {
     float gap[TL_LANES];                    /* m, separation when the step began */
     float mass[TL_LANES];                   /* kg, effective */
     float impulse[TL_LANES];                /* N s, accumulated over a sub-step */
-    float approach[TL_LANES];               /* m/s, the speed at which the surfaces will meet; 0 if they do not bounce */
-    float peak[TL_LANES];                   /* N s, the largest impulse of the step */
+    float approach[TL_LANES]; /* m/s, the speed at which the surfaces will meet; 0 if they do not bounce */
+    float peak[TL_LANES];     /* N s, the largest impulse of the step */
 } tl_contact_lane_point;
 
 typedef struct tl_contact_group {
     uint32_t a[TL_LANES], b[TL_LANES]; /* body rows */
     uint32_t contact[TL_LANES];
-    uint32_t lanes, points;            /* how many are in use */
-    uint32_t bounces, rolls;           /* whether any lane has restitution, rolling resistance */
-    uint32_t reserved[4];
+    uint32_t lanes, points;  /* how many are in use */
+    uint32_t bounces, rolls; /* whether any lane has restitution, rolling resistance */
+    uint32_t deep;           /* whether any point is deep enough to be pushed */
+    uint32_t reserved[3];
     float normal[3][TL_LANES];  /* from a to b */
     float tangent[3][TL_LANES]; /* the second tangent is normal x tangent */
     float ja1[3][TL_LANES], jb1[3][TL_LANES], ja2[3][TL_LANES], jb2[3][TL_LANES];
-    float jan[3][TL_LANES], jbn[3][TL_LANES];      /* about the normal */
+    float jan[3][TL_LANES], jbn[3][TL_LANES];          /* about the normal */
     float k11[TL_LANES], k12[TL_LANES], k22[TL_LANES]; /* inverse of the tangents' 2 x 2 matrix */
-    float twist_mass[TL_LANES], lever[TL_LANES];   /* m: of the friction about the normal */
+    float twist_mass[TL_LANES], lever[TL_LANES];       /* m: of the friction about the normal */
     float static_friction[TL_LANES], dynamic_friction[TL_LANES], restitution[TL_LANES], rolling[TL_LANES];
     float tangent_impulse[2][TL_LANES], twist_impulse[TL_LANES], rolling_impulse[2][TL_LANES];
     float roll_mass[TL_LANES];
@@ -64,15 +65,15 @@ typedef struct tl_joint_row {
     float n[3][TL_LANES];                   /* linear direction or angular axis */
     float ja[3][TL_LANES], jb[3][TL_LANES]; /* whitened */
     float error[TL_LANES];                  /* m or rad */
-    float curve[TL_LANES];                  /* m/s: half of what the bodies' turning adds to the error's rate in a sub-step */
+    float curve[TL_LANES]; /* m/s: half of what the bodies' turning adds to the error's rate in a sub-step */
     float lower[TL_LANES], upper[TL_LANES]; /* of the position, or target twice for a drive */
     float stiffness[TL_LANES], damping[TL_LANES];
-    float speed[TL_LANES];                  /* target of a drive */
-    float most[TL_LANES];                   /* N or N m: bound of the force */
-    float per_mass[TL_LANES];               /* 1: stiffness and damping are per effective mass */
+    float speed[TL_LANES];    /* target of a drive */
+    float most[TL_LANES];     /* N or N m: bound of the force */
+    float per_mass[TL_LANES]; /* 1: stiffness and damping are per effective mass */
     float impulse[TL_LANES];
     float mass[TL_LANES];
-    float at_lower[TL_LANES];               /* 1: the lower side of the range is the near one */
+    float at_lower[TL_LANES]; /* 1: the lower side of the range is the near one */
 } tl_joint_row;
 
 typedef struct tl_joint_group {

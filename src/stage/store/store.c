@@ -5,7 +5,7 @@
 
 #include "stage/store/hash.h"
 
-typedef enum life { LIFE_STATE, LIFE_STEP } life;
+typedef enum life { LIFE_STATE, LIFE_INDEX, LIFE_STEP } life;
 
 typedef struct column_info {
     const char *name;
@@ -26,11 +26,9 @@ static uint32_t power_of_two_from(uint32_t n) {
     return p;
 }
 
-/* Groups of eight: full ones, one that is not full for each colour, and room for contacts beyond the last colour, which may
- * have to stand alone. */
-static uint32_t group_capacity(uint32_t contacts) {
-    return contacts / TL_LANES + TL_COLORS + contacts / 16u;
-}
+/* Groups of eight: full ones, one that is not full for each colour, and room for contacts beyond the last colour, which
+ * may have to stand alone. */
+static uint32_t group_capacity(uint32_t contacts) { return contacts / TL_LANES + TL_COLORS + contacts / 16u; }
 
 uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_COUNT],
                          uint32_t offset[TL_COLUMN_COUNT]) {
@@ -93,8 +91,6 @@ uint32_t tl_store_live(const tl_header *h, tl_column_id column) {
         return h->nodes.high;
     case TL_COUNT_CONTACT:
         return h->contacts.high;
-    case TL_COUNT_SLOT:
-        return h->capacity[TL_COUNT_SLOT];
     case TL_COUNT_JOINT:
         return h->joints.high;
     default:
@@ -106,13 +102,24 @@ static const unsigned char *column_bytes(const tl_header *h, uint32_t column) {
     return (const unsigned char *)h + (size_t)h->offset[column] * TL_UNIT;
 }
 
+int tl_store_state(const tl_header *h, tl_column_id column, tl_live *out) {
+    if (COLUMNS[column].life != LIFE_STATE) {
+        return 0;
+    }
+    out->rows = tl_store_live(h, column);
+    out->row_bytes = COLUMNS[column].row_bytes;
+    out->data = (unsigned char *)(uintptr_t)column_bytes(h, column);
+    return 1;
+}
+
 uint64_t talus_world_hash(const talus_world *world) {
     if (!tl_world_is_sound(world)) {
         return 0;
     }
     const tl_header *h = tl_header_of(world);
     tl_hash hash = tl_hash_begin();
-    tl_hash_words(&hash, &h->settings, (size_t)((const unsigned char *)&h->end - (const unsigned char *)&h->settings) / 4u);
+    tl_hash_words(&hash, &h->settings,
+                  (size_t)((const unsigned char *)&h->end - (const unsigned char *)&h->settings) / 4u);
     for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
         if (COLUMNS[i].life != LIFE_STATE) {
             continue;

@@ -66,17 +66,16 @@ typedef struct tl_header {
     uint32_t root[2]; /* of the trees: moving, still */
     uint32_t steps_low, steps_high;
     uint32_t event_shapes, breaking_joints; /* in use: without any there is nothing to look for */
-    uint32_t end; /* marks where the state ends */
+    uint32_t end;                           /* marks where the state ends */
     talus_counters counters;
     tl_event_counts events;
     uint32_t groups, joint_groups, joint_rows; /* of the last step */
 } tl_header;
 
 /* One accessor a column: tl_body_pose(h) and so on. */
-#define X(name, type, count, stage, life, word)                                                       \
-    static inline type *tl_##name(const tl_header *h) {                                               \
-        return (type *)(void *)((unsigned char *)(uintptr_t)h +                                       \
-                                (size_t)h->offset[TL_COLUMN_##name] * TL_UNIT);                        \
+#define X(name, type, count, stage, life, word)                                                                        \
+    static inline type *tl_##name(const tl_header *h) {                                                                \
+        return (type *)(void *)((unsigned char *)(uintptr_t)h + (size_t)h->offset[TL_COLUMN_##name] * TL_UNIT);        \
     }
 TL_COLUMNS(X)
 #undef X
@@ -95,6 +94,13 @@ uint32_t tl_pool_top(const tl_pool *pool, uint32_t capacity);
 
 /* How many rows of a column are live. */
 uint32_t tl_store_live(const tl_header *h, tl_column_id column);
+
+/* The live rows of a state column; 0 if the column is not part of the state. */
+typedef struct tl_live {
+    unsigned char *data;
+    uint32_t rows, row_bytes;
+} tl_live;
+int tl_store_state(const tl_header *h, tl_column_id column, tl_live *out);
 
 static inline talus_vec3 tl_row_xyz(const tl_row8 *r) { return tl_v(r->f[0], r->f[1], r->f[2]); }
 static inline talus_vec3 tl_row_345(const tl_row8 *r) { return tl_v(r->f[3], r->f[4], r->f[5]); }

@@ -1,0 +1,257 @@
+/* Snapshots: a restored world goes on bit for bit, whatever happened in between; damaged ones are refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "talus/talus.h"
+
+enum { BODIES = 60, JOINTS = 20, WORLDS = 12, STEPS = 120 };
+
+typedef struct yard {
+    talus_world world;
+    void *block;
+    uint32_t seed;
+    talus_body body[BODIES];
+    talus_joint joint[JOINTS];
+} yard;
+
+static uint32_t pick(yard *y, uint32_t below) {
+    y->seed = y->seed * 1664525u + 1013904223u;
+    return (y->seed >> 8) % below;
+}
+
+static float between(yard *y, float low, float high) { return low + (high - low) * (float)pick(y, 65536) / 65536.0f; }
+
+static void open_yard(yard *y, uint32_t seed) {
+    memset(y, 0, sizeof *y);
+    y->seed = seed;
+    talus_world_def def = talus_world_def_default();
+    def.body_capacity = BODIES, def.shape_capacity = BODIES + 20, def.joint_capacity = JOINTS;
+    def.contact_capacity = 200; /* too few on purpose */
+    def.sleep_time = 0.1f;
+    size_t size = talus_world_size(&def);
+    y->block = aligned_alloc(TALUS_BLOCK_ALIGNMENT, (size + 63u) / 64u * 64u);
+    assert_int_equal(talus_world_init(&y->world, &def, y->block, size), TALUS_OK);
+    talus_shape_def ground = talus_shape_def_default();
+    ground.geometry.half = (talus_vec3){10.0f, 0.5f, 10.0f};
+    ground.pose.position.y = -0.5f;
+    talus_shape shape;
+    assert_int_equal(talus_shape_create(&y->world, talus_world_ground(&y->world), &ground, &shape), TALUS_OK);
+}
+
+static void close_yard(yard *y) { free(y->block); }
+
+static void add_body(yard *y, uint32_t i) {
+    talus_body_def def = talus_body_def_default();
+    def.type = pick(y, 8) ? TALUS_DYNAMIC : pick(y, 2) ? TALUS_KINEMATIC : TALUS_STATIC;
+    def.pose.position = (talus_vec3){between(y, -4, 4), between(y, 0, 5), between(y, -4, 4)};
+    def.angular_velocity.y = between(y, -1, 1);
+    if (talus_body_create(&y->world, &def, &y->body[i]) != TALUS_OK) {
+        return;
+    }
+    for (uint32_t k = 0; k <= pick(y, 3); k++) {
+        talus_shape_def s = talus_shape_def_default();
+        talus_shape shape;
+        s.geometry.type = (talus_shape_type)pick(y, 4);
+        s.geometry.radius = s.geometry.radius_top = s.geometry.radius_bottom = between(y, 0.2f, 0.5f);
+        s.geometry.half_height = between(y, 0.1f, 0.5f);
+        s.sensor = pick(y, 9) == 0;
+        s.events = pick(y, 2) == 0;
+        talus_shape_create(&y->world, y->body[i], &s, &shape);
+    }
+}
+
+static void add_joint(yard *y) {
+    talus_joint_def def = talus_joint_def_default();
+    def.a = y->body[pick(y, BODIES)], def.b = y->body[pick(y, BODIES)];
+    if (pick(y, 2)) {
+        talus_joint_make_ball(&def);
+    } else {
+        talus_joint_make_distance(&def, 0.5f, 1.5f);
+    }
+    def.break_force = pick(y, 3) ? 0.0f : 500.0f;
+    talus_joint_create(&y->world, &def, &y->joint[pick(y, JOINTS)]);
+}
+
+/* One random command; many are refused, which is part of the test. */
+static void command(yard *y) {
+    uint32_t i = pick(y, BODIES);
+    switch (pick(y, 10)) {
+    case 0:
+    case 1:
+    case 2:
+        if (!talus_body_is_valid(&y->world, y->body[i])) {
+            add_body(y, i);
+        }
+        break;
+    case 3:
+        talus_body_destroy(&y->world, y->body[i]);
+        break;
+    case 4:
+        add_joint(y);
+        break;
+    case 5:
+        talus_joint_destroy(&y->world, y->joint[pick(y, JOINTS)]);
+        break;
+    case 6: {
+        talus_pose pose = {{between(y, -4, 4), between(y, 0, 5), between(y, -4, 4)}, {0, 0, 0, 1}};
+        talus_body_set_pose(&y->world, y->body[i], &pose);
+        break;
+    }
+    case 7:
+        talus_body_sleep(&y->world, y->body[i]);
+        break;
+    case 8:
+        talus_body_set_velocity(&y->world, y->body[i], (talus_vec3){between(y, -3, 3), 0, 0}, (talus_vec3){0, 0, 0});
+        break;
+    default:
+        talus_body_apply_impulse(&y->world, y->body[i], (talus_vec3){0, between(y, 0, 500), 0},
+                                 (talus_vec3){between(y, -4, 4), 0, 0});
+        break;
+    }
+}
+
+static void *save(const yard *y, size_t *size) {
+    *size = talus_world_save_size(&y->world);
+    void *snapshot = malloc(*size);
+    assert_non_null(snapshot);
+    assert_int_equal(talus_world_save(&y->world, snapshot, *size), TALUS_OK);
+    return snapshot;
+}
+
+/* Saves, runs a few steps with commands, restores, runs the same again: every hash must come back. */
+static void goes_on_bit_for_bit(void **state) {
+    (void)state;
+    uint32_t base = 20260801u;
+    print_message("seed %u\n", base);
+    for (uint32_t w = 0; w < WORLDS; w++) {
+        yard y;
+        open_yard(&y, base + w);
+        for (uint32_t k = 0; k < STEPS; k++) {
+            size_t size;
+            void *snapshot = save(&y, &size);
+            uint64_t at = talus_world_hash(&y.world), hash[3];
+            yard here = y;
+            for (int round = 0; round < 2; round++) {
+                for (int s = 0; s < 3; s++) {
+                    command(&y);
+                    talus_world_step(&y.world, 1.0f / 60.0f, NULL, NULL);
+                    if (round == 0) {
+                        hash[s] = talus_world_hash(&y.world);
+                    } else {
+                        assert_true(talus_world_hash(&y.world) == hash[s]);
+                    }
+                }
+                if (round == 0) {
+                    assert_int_equal(talus_world_restore(&y.world, snapshot, size), TALUS_OK);
+                    assert_true(talus_world_hash(&y.world) == at);
+                    assert_int_equal(talus_world_validate(&y.world), TALUS_OK);
+                    y.seed = here.seed;
+                    memcpy(y.body, here.body, sizeof y.body);
+                    memcpy(y.joint, here.joint, sizeof y.joint);
+                }
+            }
+            free(snapshot);
+        }
+        close_yard(&y);
+    }
+}
+
+static void goes_into_another_block(void **state) {
+    (void)state;
+    yard a, b;
+    open_yard(&a, 7);
+    open_yard(&b, 8);
+    for (int k = 0; k < 60; k++) {
+        command(&a);
+        talus_world_step(&a.world, 1.0f / 60.0f, NULL, NULL);
+    }
+    size_t size;
+    void *snapshot = save(&a, &size);
+    assert_int_equal(talus_world_restore(&b.world, snapshot, size), TALUS_OK);
+    for (int k = 0; k < 60; k++) {
+        talus_world_step(&a.world, 1.0f / 60.0f, NULL, NULL);
+        talus_world_step(&b.world, 1.0f / 60.0f, NULL, NULL);
+        assert_true(talus_world_hash(&a.world) == talus_world_hash(&b.world));
+    }
+    free(snapshot);
+    close_yard(&a);
+    close_yard(&b);
+}
+
+static void newer_handles_are_stale(void **state) {
+    (void)state;
+    yard y;
+    open_yard(&y, 3);
+    add_body(&y, 0);
+    size_t size;
+    void *snapshot = save(&y, &size);
+    add_body(&y, 1);
+    assert_true(talus_body_is_valid(&y.world, y.body[1]));
+    talus_body_destroy(&y.world, y.body[0]);
+    assert_int_equal(talus_world_restore(&y.world, snapshot, size), TALUS_OK);
+    assert_true(talus_body_is_valid(&y.world, y.body[0]));
+    assert_false(talus_body_is_valid(&y.world, y.body[1]));
+    free(snapshot);
+    close_yard(&y);
+}
+
+static void damaged_ones_are_refused(void **state) {
+    (void)state;
+    yard y;
+    open_yard(&y, 5);
+    for (int k = 0; k < 30; k++) {
+        command(&y);
+        talus_world_step(&y.world, 1.0f / 60.0f, NULL, NULL);
+    }
+    size_t size;
+    unsigned char *snapshot = save(&y, &size);
+    uint64_t hash = talus_world_hash(&y.world);
+    assert_int_equal(talus_world_save(&y.world, snapshot, size - 1u), TALUS_SMALL_BLOCK);
+    assert_int_equal(talus_world_restore(&y.world, snapshot, size - 4u), TALUS_BAD_BLOB);
+    assert_int_equal(talus_world_restore(&y.world, snapshot, 3), TALUS_BAD_BLOB);
+    assert_int_equal(talus_world_restore(&y.world, snapshot + 1, size - 1u), TALUS_UNALIGNED);
+    assert_int_equal(talus_world_restore(&y.world, NULL, size), TALUS_BAD_ARGUMENT);
+    /* Any bit of the header and the counts: refused with nothing changed, or taken without reading out of range. */
+    for (size_t bit = 0; bit < 8u * 300u; bit++) {
+        snapshot[bit / 8u] ^= (unsigned char)(1u << bit % 8u);
+        talus_status status = talus_world_restore(&y.world, snapshot, size);
+        snapshot[bit / 8u] ^= (unsigned char)(1u << bit % 8u);
+        if (status != TALUS_OK) {
+            assert_true(talus_world_hash(&y.world) == hash);
+        } else {
+            talus_world_validate(&y.world);
+            assert_int_equal(talus_world_restore(&y.world, snapshot, size), TALUS_OK);
+        }
+    }
+    yard other;
+    open_yard(&other, 6);
+    talus_world_def def;
+    talus_world_get_def(&other.world, &def);
+    def.body_capacity++;
+    size_t bytes = talus_world_size(&def);
+    void *block = aligned_alloc(TALUS_BLOCK_ALIGNMENT, (bytes + 63u) / 64u * 64u);
+    talus_world larger;
+    assert_int_equal(talus_world_init(&larger, &def, block, bytes), TALUS_OK);
+    assert_int_equal(talus_world_restore(&larger, snapshot, size), TALUS_BAD_BLOB);
+    free(block);
+    free(snapshot);
+    close_yard(&other);
+    close_yard(&y);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(goes_on_bit_for_bit),
+        cmocka_unit_test(goes_into_another_block),
+        cmocka_unit_test(newer_handles_are_stale),
+        cmocka_unit_test(damaged_ones_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
