@@ -57,7 +57,7 @@ typedef struct column {
     size_t row, offset, rows;
     int lasts;
 } column;
-enum { STATE = 1, STEP = 0 };
+enum { STATE = 1, INDEX = 0, STEP = 0 };
 
 static size_t columns_of(const tl_header *h, column *out) {
     size_t n = 0;
