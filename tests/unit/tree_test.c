@@ -53,8 +53,10 @@ static void as_brute_force(void **state) {
             tl_tree_walk walk;
             tl_tree_begin(&walk, h, t, &query);
             for (uint32_t s = tl_tree_next(&walk, h); s != TL_NONE; s = tl_tree_next(&walk, h)) {
-                assert_true(s < COUNT && !found[s]);
-                found[s] = 1;
+                assert_true(s < COUNT);
+                if (s < COUNT) {
+                    found[s]++;
+                }
             }
             for (uint32_t s = 0; s < COUNT; s++) {
                 assert_int_equal(found[s], leaf[s] != TL_NONE && tree[s] == t && tl_aabb_overlap(&box[s], &query));
