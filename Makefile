@@ -20,7 +20,8 @@ WARN = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wmissing-prototypes $(WERR
 # -ffp-contract=off: a fused multiply-add has other bits than the two operations.
 # -fno-strict-aliasing: the lanes load and store floats as integers and back; gcc 12 at -O3 on AArch64 reorders such a
 # load before the store of the same bytes.
-MATH = -ffp-contract=off -fno-strict-aliasing
+# -fno-builtin-bcmp: clang makes bcmp of some memcmp, one more function to ask the world for.
+MATH = -ffp-contract=off -fno-strict-aliasing -fno-builtin-bcmp
 TARGET := $(shell $(CC) $(CFLAGS) -dumpmachine 2>/dev/null)
 # clang before 16 vectorises plain code for wasm wrongly: loads drift past stores. To it a later -O2 takes these two back,
 # so MATH stands last.
@@ -88,7 +89,7 @@ no-tool: lib
 help:
 	@echo "make                the library $(LIB) and the tool $(TOOL)"
 	@echo "make run            installs what is missing, builds, and runs a scene into $(BUILD)/showcase.glb"
-	@echo "make test           installs what is missing; all tests and the golden hashes (TESTS="block loop": some)"
+	@echo "make test           installs what is missing; all tests and the golden hashes (TESTS='block loop': some)"
 	@echo "make sanitize       the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make golden         the golden hashes over compilers, levels, instruction sets, processors (FAST=1: this one)"
 	@echo "make golden-update  takes this build's hashes as the golden ones"

@@ -413,22 +413,37 @@ void tl_epa_run(const tl_core *a, const tl_core *b, const tl_simplex *simplex, t
     finish(&p, out);
 }
 
-int tl_epa_from(const tl_core *a, const tl_core *b, talus_vec3 normal, tl_depth *out) {
+/* Puts the fifth of the first points in, if it is outside of the others' tetrahedron. */
+static int add_fifth(polytope *p) {
+    for (uint32_t i = 0; i < p->face_end; ++i) {
+        if (vec_dot(p->face[i].n, p->w[4]) - p->face[i].d > TOLERANCE) {
+            p->vertex_count = 5;
+            return insert(p, 4, i);
+        }
+    }
+    return 1;
+}
+
+int tl_epa_from(const tl_core *a, const tl_core *b, talus_vec3 normal, float tilt, tl_depth *out) {
     polytope p;
     start(&p, a, b);
-    /* three points where the surface is met by the normal or beside it, and one on the far side */
-    talus_vec3 m = tl_neg(normal), t = tl_perpendicular(m), u = tl_cross(m, t);
-    support(&p, tl_mad(m, 0.1f, t), 0);
+    /* one point on the far side, and four where the surface is met by the normal, to all sides of it */
+    talus_vec3 m = tl_neg(normal), t = tl_perpendicular(m), u = tl_cross(m, t), side[4];
+    side[0] = tl_add(t, u);
+    side[1] = tl_sub(u, t);
+    side[2] = tl_neg(side[0]);
+    side[3] = tl_neg(side[1]);
+    support(&p, normal, 0);
     p.vertex_count = 1;
-    support(&p, tl_mad(tl_mad(m, -0.05f, t), 0.0866f, u), 1);
-    support(&p, tl_mad(tl_mad(m, -0.05f, t), -0.0866f, u), 2);
-    support(&p, normal, 3);
+    for (uint32_t i = 0; i < 4; ++i) {
+        support(&p, tl_mad(m, tilt, side[i]), i + 1u);
+    }
     p.vertex_count = 4;
-    if (!first_faces(&p)) {
+    if (!first_faces(&p) || !add_fifth(&p)) {
         return 0;
     }
-    for (int i = 0; i < 4; ++i) {
-        if (p.face[i].d < 0.0) {
+    for (uint32_t i = 0; i < p.face_end; ++i) {
+        if (p.face[i].state == 1 && p.face[i].d < 0.0) {
             return 0;
         }
     }

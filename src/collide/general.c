@@ -23,6 +23,29 @@ static void set_touch(const tl_core *a, const tl_core *b, talus_vec3 n, float se
     touch->point_b = tl_mad(pb, -b->radius, n);
 }
 
+/* Overlap from the last normal on. A face near to it on either shape is the likely answer: the points of the difference
+ * around a face's own normal are the corners of a facet, which EPA then has only to confirm. */
+static int overlap_again(const tl_core *a, const tl_core *b, talus_vec3 guess, float apart, tl_depth *depth) {
+    tl_feature face;
+    talus_vec3 n = guess, pa, pb;
+    float tilt = 0.02f;
+    for (int turn = 0; turn < 2; ++turn) {
+        uint32_t ia = 0, ib = 0;
+        tl_feature_find(turn ? b : a, turn ? tl_neg(guess) : guess, 1, &face);
+        if (face.count < 3) {
+            continue;
+        }
+        talus_vec3 m = turn ? tl_neg(face.normal) : face.normal;
+        float s = tl_core_separation(a, b, m, &ia, &ib, &pa, &pb);
+        if (s >= apart) {
+            apart = s;
+            n = m;
+            tilt = 1e-5f;
+        }
+    }
+    return apart < 0.0f && tl_epa_from(a, b, n, tilt, depth);
+}
+
 /* Where the shapes come nearest or overlap; 0 if they are further apart than `margin` along touch->normal. */
 static int find_touch(const tl_core *a, const tl_core *b, float margin, const tl_pair_cache *cache, tl_touch *touch) {
     tl_simplex simplex;
@@ -37,7 +60,7 @@ static int find_touch(const tl_core *a, const tl_core *b, float margin, const tl
             touch->normal = guess;
             return 0;
         }
-        if (apart < 0.0f && tl_epa_from(a, b, guess, &depth)) {
+        if (apart < 0.0f && overlap_again(a, b, guess, apart, &depth)) {
             set_touch(a, b, depth.normal, -depth.depth, depth.point_a, depth.point_b, touch);
             return 1;
         }

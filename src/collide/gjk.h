@@ -42,9 +42,9 @@ typedef struct tl_depth {
 /* The shortest way out of an overlap of two cores, from the simplex that GJK ended with. */
 void tl_epa_run(const tl_core *a, const tl_core *b, const tl_simplex *simplex, tl_depth *out);
 
-/* The same from a normal that is near to the right one. 0 if the points met along it and around it do not show an
- * overlap: the cores may still overlap. */
-int tl_epa_from(const tl_core *a, const tl_core *b, talus_vec3 normal, tl_depth *out);
+/* The same from a normal that is near to the right one, by the points met along it and `tilt` (radians) to all sides. 0
+ * if these do not show an overlap: the cores may still overlap. */
+int tl_epa_from(const tl_core *a, const tl_core *b, talus_vec3 normal, float tilt, tl_depth *out);
 
 /* How far A and B are apart along the unit vector n from A to B: negative in overlap, without the radii. The vertex
  * numbers are where a search on a large hull starts. */

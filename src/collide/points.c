@@ -7,29 +7,38 @@
 /* A point this much less deep must be that times further out to be kept instead. */
 #define GAP_WEIGHT 4.0f
 
-static uint32_t best_area(const tl_candidate *c, uint32_t count, const uint32_t *chosen, uint32_t kept, talus_vec3 n,
-                          float least, float scale) {
+#define MAX_CANDIDATES (2u * TL_FEATURE_POINTS)
+
+/* Candidates seen along the normal from the first chosen one, with x to the second: in units of m^2, both scaled by the
+ * distance of the two. */
+typedef struct plan {
+    float x[MAX_CANDIDATES], y[MAX_CANDIDATES], penalty[MAX_CANDIDATES];
+    float xx, least_area;
+} plan;
+
+/* The one that makes the largest triangle with the first two. */
+static uint32_t third(const plan *p, uint32_t count) {
     uint32_t best = count;
-    float most = scale * scale * 1e-6f;
+    float most = p->least_area;
     for (uint32_t i = 0; i < count; ++i) {
-        talus_vec3 p0 = c[chosen[0]].p, d = tl_sub(c[i].p, p0);
-        float area = 0.0f;
-        if (kept == 2) {
-            area = tl_abs(tl_dot(n, tl_cross(tl_sub(c[chosen[1]].p, p0), d)));
-        } else {
-            /* outside of the triangle by the side that it is furthest across */
-            talus_vec3 p1 = c[chosen[1]].p, p2 = c[chosen[2]].p;
-            float whole = tl_dot(n, tl_cross(tl_sub(p1, p0), tl_sub(p2, p0))), turn = whole >= 0.0f ? -1.0f : 1.0f;
-            float s0 = turn * tl_dot(n, tl_cross(tl_sub(p1, p0), d));
-            float s1 = turn * tl_dot(n, tl_cross(tl_sub(p2, p1), tl_sub(c[i].p, p1)));
-            float s2 = turn * tl_dot(n, tl_cross(tl_sub(p0, p2), tl_sub(c[i].p, p2)));
-            area = tl_max(s0, tl_max(s1, s2));
-        }
-        area -= GAP_WEIGHT * (c[i].gap - least) * scale;
-        if (area > most) {
-            most = area;
-            best = i;
-        }
+        float area = tl_abs(p->y[i]) - p->penalty[i];
+        best = area > most ? i : best;
+        most = area > most ? area : most;
+    }
+    return best;
+}
+
+/* The one that adds the most to the triangle, by the side that it is furthest beyond. */
+static uint32_t fourth(const plan *p, uint32_t count, uint32_t c) {
+    uint32_t best = count;
+    float most = p->least_area, x2 = p->x[c], y2 = p->y[c], turn = y2 >= 0.0f ? -1.0f : 1.0f, inverse = turn / p->xx;
+    for (uint32_t i = 0; i < count; ++i) {
+        float x = p->x[i], y = p->y[i];
+        float s0 = turn * y, s1 = ((x2 - p->xx) * y - y2 * (x - p->xx)) * inverse;
+        float s2 = (y2 * (x - x2) - x2 * (y - y2)) * inverse;
+        float area = tl_max(s0, tl_max(s1, s2)) - p->penalty[i];
+        best = area > most ? i : best;
+        most = area > most ? area : most;
     }
     return best;
 }
@@ -38,31 +47,40 @@ static uint32_t best_area(const tl_candidate *c, uint32_t count, const uint32_t 
 uint32_t tl_candidates_reduce(tl_candidate *c, uint32_t count, talus_vec3 n, float tolerance) {
     uint32_t deepest = 0, chosen[4] = {0, 0, 0, 0}, kept = 1;
     float reach2 = 0.0f;
+    plan p;
     for (uint32_t i = 1; i < count; ++i) {
         deepest = c[i].gap < c[deepest].gap ? i : deepest;
         reach2 = tl_max(reach2, tl_length2(tl_sub(c[i].p, c[0].p)));
     }
-    float least = c[deepest].gap, reach = sqrtf(reach2);
+    float least = c[deepest].gap, near = least + 1e-3f * sqrtf(reach2);
     /* of points about as deep the one of the lowest number, so that the choice does not flicker */
     chosen[0] = deepest;
     for (uint32_t i = 0; i < count; ++i) {
-        chosen[0] = c[i].gap <= least + 1e-3f * reach && c[i].id < c[chosen[0]].id ? i : chosen[0];
+        chosen[0] = c[i].gap <= near && c[i].id < c[chosen[0]].id ? i : chosen[0];
     }
     float most = 0.0f;
     for (uint32_t i = 0; i < count; ++i) {
         float score = tl_length(tl_sub(c[i].p, c[chosen[0]].p)) - GAP_WEIGHT * (c[i].gap - least);
-        if (score > most) {
-            most = score;
-            chosen[1] = i;
-            kept = 2;
-        }
+        chosen[1] = score > most ? i : chosen[1];
+        most = score > most ? score : most;
     }
-    while (kept >= 2 && kept < 4) {
-        uint32_t next = best_area(c, count, chosen, kept, n, least, most);
-        if (next == count) {
-            break;
+    if (most > 0.0f) {
+        talus_vec3 from = c[chosen[0]].p, x = tl_sub(c[chosen[1]].p, from), y = tl_cross(n, x);
+        p.xx = tl_length2(x);
+        p.least_area = 1e-6f * most * most;
+        for (uint32_t i = 0; i < count; ++i) {
+            talus_vec3 d = tl_sub(c[i].p, from);
+            p.x[i] = tl_dot(d, x);
+            p.y[i] = tl_dot(d, y);
+            p.penalty[i] = GAP_WEIGHT * most * (c[i].gap - least);
         }
-        chosen[kept++] = next;
+        kept = 2;
+        chosen[2] = third(&p, count);
+        if (chosen[2] < count) {
+            kept = 3;
+            chosen[3] = fourth(&p, count, chosen[2]);
+            kept += chosen[3] < count;
+        }
     }
     float found = c[chosen[0]].gap;
     uint32_t nearest = 0;

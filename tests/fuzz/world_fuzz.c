@@ -254,6 +254,9 @@ static void call(talus_world *w, scene *s, input *in) {
 static int finite3(talus_vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
 static void look(talus_world *w, const scene *s) {
+    if (talus_world_validate(w) != TALUS_OK) {
+        abort();
+    }
     for (uint32_t i = 0; i < BODIES; i++) {
         talus_pose p;
         talus_vec3 v, u;

@@ -33,10 +33,11 @@ static void size_answers_the_definition(void **state) {
     assert_true(large == 0 || large > (size_t)TALUS_MAX_CAPACITY * 100u);
 }
 
-static void float_fields(talus_world_def *def, float *fields[12]) {
-    float *all[12] = {&def->gravity.x,     &def->gravity.y,   &def->gravity.z,         &def->push_share,
-                      &def->push_slop,     &def->push_speed,  &def->hit_speed,         &def->speculative_margin,
-                      &def->recycle_slack, &def->sleep_speed, &def->restitution_speed, &def->sleep_time};
+enum { FIELDS = 10 };
+static void float_fields(talus_world_def *def, float *fields[FIELDS]) {
+    float *all[FIELDS] = {&def->gravity.x,          &def->gravity.y,     &def->gravity.z, &def->push_speed,
+                          &def->speculative_margin, &def->recycle_slack, &def->hit_speed, &def->sleep_speed,
+                          &def->restitution_speed,  &def->sleep_time};
     memcpy(fields, all, sizeof all);
 }
 
@@ -66,19 +67,19 @@ static void init_refuses_and_writes_nothing(void **state) {
         NOT(TALUS_UNALIGNED, talus_world_init(&world, &def, block + off, size));
     }
     const float bad[3] = {NAN, INFINITY, -INFINITY};
-    for (int k = 0; k < 12; k++) {
+    for (int k = 0; k < FIELDS; k++) {
         for (int i = 0; i < 3; i++) {
             talus_world_def broken = def;
-            float *fields[12];
+            float *fields[FIELDS];
             float_fields(&broken, fields);
             *fields[k] = bad[i];
             assert_true(talus_world_size(&broken) == 0);
             NOT(TALUS_NOT_FINITE, talus_world_init(&world, &broken, block, size));
         }
     }
-    for (int k = 3; k < 12; k++) { /* all but gravity are not negative */
+    for (int k = 3; k < FIELDS; k++) { /* all but gravity are not negative */
         talus_world_def broken = def;
-        float *fields[12];
+        float *fields[FIELDS];
         float_fields(&broken, fields);
         *fields[k] = -1.0f;
         NOT(TALUS_BAD_ARGUMENT, talus_world_init(&world, &broken, block, size));

@@ -306,6 +306,7 @@ static void meddle(scene *s) {
 static int finite3(talus_vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
 static void check(scene *s, uint64_t seed, int step) {
+    assert_int_equal(talus_world_validate(&s->world), TALUS_OK);
     for (uint32_t i = 0; i < s->bodies; i++) {
         talus_pose pose;
         talus_vec3 v, w;

@@ -77,7 +77,7 @@ static void no_world(void **state) {
 static void world_settings(void **state) {
     (void)state;
     talus_world_def def = kit_small(), got;
-    def.substeps = 7, def.iterations = 3, def.push_share = 0.3f, def.hit_speed = 2.5f;
+    def.substeps = 7, def.iterations = 3, def.push_speed = 0.3f, def.hit_speed = 2.5f;
     talus_world world = kit_world(&def);
     OK(talus_world_get_def(&world, &got));
     assert_int_equal(got.body_capacity, def.body_capacity);
@@ -87,7 +87,7 @@ static void world_settings(void **state) {
     assert_int_equal(got.event_capacity, def.event_capacity);
     assert_int_equal(got.substeps, 7);
     assert_int_equal(got.iterations, 3);
-    assert_true(got.push_share == 0.3f && got.hit_speed == 2.5f && got.gravity.y == def.gravity.y);
+    assert_true(got.push_speed == 0.3f && got.hit_speed == 2.5f && got.gravity.y == def.gravity.y);
     assert_int_equal(got.isa, talus_world_get_isa(&world));
     assert_int_not_equal(got.isa, TALUS_ISA_BEST);
     got.isa = def.isa;

@@ -1,0 +1,115 @@
+/* What stands: stacks, pyramids, heavy on light; and what it presses with. */
+#include "analytic_kit.h"
+
+/* Ten boxes stand: none moves by more than two millimetres sideways, and they fall asleep. A cube's face of four points
+ * is a spring of m w^2 against the floor and m w^2 / 2 against its like, w = 2 pi 50 Hz: so far does each one sink, to
+ * 5 %. */
+static void stack_stands(void **state) {
+    (void)state;
+    talus_world_def def = kit_small();
+    talus_world world = kit_world(&def);
+    kit_floor(&world);
+    talus_body body[10];
+    for (int i = 0; i < 10; i++) {
+        body[i] = kit_box(&world, kit_vec(0.0f, 0.5f + (float)i, 0.0f), 0.5f);
+    }
+    kit_steps(&world, 600);
+    double sunk = 0.0;
+    for (int i = 0; i < 10; i++) {
+        sunk += (i ? 2.0 : 1.0) * (10 - i) * G / (100.0 * PI * 100.0 * PI);
+        CLOSE(kit_place(&world, body[i]).x, 0.0, 2e-3);
+        CLOSE(kit_place(&world, body[i]).z, 0.0, 2e-3);
+        CLOSE(kit_place(&world, body[i]).y, 0.5 + i - sunk, 0.05 * sunk);
+        assert_int_equal(talus_body_is_awake(&world, body[i]), 0);
+    }
+    kit_end(&world);
+}
+
+static void pyramid_stands(void **state) {
+    (void)state;
+    talus_world_def def = kit_small();
+    def.enable_sleep = 0;
+    talus_world world = kit_world(&def);
+    kit_floor(&world);
+    talus_body body[36];
+    talus_vec3 at[36];
+    int count = 0;
+    for (int row = 0; row < 8; row++) {
+        for (int i = 0; i < 8 - row; i++) {
+            at[count] = kit_vec(1.05f * ((float)i + 0.5f * (float)row), 0.5f + (float)row, 0.0f);
+            body[count] = kit_box(&world, at[count], 0.5f);
+            count++;
+        }
+    }
+    kit_steps(&world, 600);
+    for (int i = 0; i < count; i++) {
+        talus_vec3 now = kit_place(&world, body[i]);
+        CLOSE(now.x, at[i].x, 5e-3);
+        CLOSE(now.y, at[i].y, 2e-3 * (double)at[i].y + 2e-3);
+        CLOSE(now.z, at[i].z, 5e-3);
+        BELOW(kit_length(kit_velocity(&world, body[i])), 1e-2);
+    }
+    kit_end(&world);
+}
+
+/* Twenty kilograms on one stand, and squeeze it by half a centimetre; more than about fifty would crush it. */
+static void heavy_on_light(void **state) {
+    (void)state;
+    talus_world world = world_of(0.0f, (float)-G, 0.0f);
+    kit_floor(&world);
+    talus_body light = kit_body(&world, TALUS_DYNAMIC, kit_vec(0.0f, 0.25f, 0.0f));
+    talus_shape_def def = kit_box_def(0.25f, 0.25f, 0.25f);
+    def.density = 8.0f;
+    kit_shape(&world, light, &def);
+    talus_body heavy = kit_body(&world, TALUS_DYNAMIC, kit_vec(0.0f, 1.0f, 0.0f));
+    def = kit_box_def(0.5f, 0.5f, 0.5f);
+    def.density = 20.0f;
+    kit_shape(&world, heavy, &def);
+    kit_steps(&world, 600);
+    CLOSE(kit_place(&world, light).y, 0.25, 5e-3);
+    CLOSE(kit_place(&world, heavy).y, 1.0, 1e-2);
+    CLOSE(kit_place(&world, heavy).x, 0.0, 1e-2);
+    BELOW(kit_length(kit_velocity(&world, heavy)), 1e-2);
+    kit_end(&world);
+}
+
+/* A box tips over an edge of a table when its centre is beyond it and not when it is before it. */
+static void tips_at_the_edge(void **state) {
+    (void)state;
+    for (int beyond = 0; beyond < 2; beyond++) {
+        talus_world world = world_of(0.0f, (float)-G, 0.0f);
+        talus_shape_def def = kit_box_def(2.0f, 0.5f, 2.0f);
+        def.pose.position = kit_vec(-2.0f, -0.5f, 0.0f);
+        kit_shape(&world, talus_world_ground(&world), &def);
+        talus_body body = kit_box(&world, kit_vec(beyond ? 0.01f : -0.01f, 0.5f, 0.0f), 0.5f);
+        kit_steps(&world, 180);
+        assert_int_equal(kit_place(&world, body).y < 0.0f, beyond);
+        if (!beyond) {
+            CLOSE(kit_place(&world, body).x, -0.01, 2e-3);
+            CLOSE(angle_z(&world, body), 0.0, 0.01);
+        }
+        kit_end(&world);
+    }
+}
+
+/* On a slope a tall box with friction enough tips when its centre is above its lower edge: tan a = b / h. */
+static void tips_on_a_slope(void **state) {
+    (void)state;
+    for (int beyond = 0; beyond < 2; beyond++) {
+        const double edge = atan(0.4);
+        talus_world world = world_on_slope(edge + (beyond ? 0.02 : -0.02));
+        floor_of(&world, 2.0f);
+        talus_body body = box_of(&world, kit_vec(0.0f, 0.5f, 0.0f), kit_vec(0.2f, 0.5f, 0.2f), 2.0f);
+        kit_steps(&world, 300);
+        assert_int_equal(fabs(angle_z(&world, body)) > 0.5, beyond);
+        kit_end(&world);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stack_stands),     cmocka_unit_test(pyramid_stands),  cmocka_unit_test(heavy_on_light),
+        cmocka_unit_test(tips_at_the_edge), cmocka_unit_test(tips_on_a_slope),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
