@@ -108,10 +108,11 @@ static void solve(tl_step *step, watch *w) {
     tl_stage_contact_groups(step);
     tl_stage_joint_groups(step);
     k->prepare_contacts(step, 0, h->groups);
-    uint32_t bouncing = 0;
+    uint32_t bouncing = 0, rolling = 0;
     step->pushes = h->joint_groups > 0;
     for (uint32_t i = 0; i < h->groups; i++) {
         bouncing |= tl_group_pool(h)[i].bounces;
+        rolling |= tl_group_pool(h)[i].rolls;
         step->pushes |= tl_group_pool(h)[i].deep != 0;
     }
     watch_lap(w, TALUS_STAGE_ROWS);
@@ -122,6 +123,7 @@ static void solve(tl_step *step, watch *w) {
         k->bounce_contacts(step, 0, h->groups);
     }
     h->counters.restitution_skipped = !bouncing;
+    h->counters.rolling_skipped = !rolling;
     watch_lap(w, TALUS_STAGE_RESTITUTION);
     k->store_contacts(step, 0, h->groups);
     k->store_joints(step, 0, h->joint_groups);
