@@ -145,6 +145,8 @@ $(TOOL): $(TOOL_MAIN:%.c=$(BUILD)/%.o) $(TOOLS_LIB) $(LIB)
 # --- tests ------------------------------------------------------------------------------------------
 
 $(HELP_OBJ) $(TEST_SRC:%.c=$(BUILD)/%.o): | need-deps
+# Tests may use what the host's C library has beyond C99: aligned_alloc.
+$(TEST_SRC:%.c=$(BUILD)/%.o): INCLUDES += -D_ISOC11_SOURCE
 $(HELP_LIB): $(HELP_OBJ)
 	$(archive)
 
