@@ -10,6 +10,7 @@
 static void collide_far(talus_vec3 t, float margin, tl_manifold *out) {
     float distance = tl_far_distance(t, &out->normal);
     out->count = 0;
+    out->gap = distance;
     if (distance <= margin) {
         out->count = 1;
         out->point[0].position = tl_scale(t, 0.5f);

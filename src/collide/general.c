@@ -111,6 +111,7 @@ static void meet(const tl_core *a, const tl_core *b, float margin, tl_touch touc
         }
     }
     out->normal = touch.normal;
+    out->gap = touch.separation;
     if (touch.separation <= margin) {
         tl_manifold_meet(a, b, &fa, &fb, &touch, margin, out);
     }
@@ -124,6 +125,7 @@ static void meet_apart(const tl_core *a, const tl_core *b, float margin, tl_gjk_
         tl_cache_keep_axis(cache, near->normal);
         out->normal = near->normal;
         out->count = 0;
+        out->gap = near->distance - (a->radius + b->radius);
         return;
     }
     tl_cache_keep_simplex(cache, a, b, simplex, near->normal);
@@ -174,6 +176,7 @@ void tl_collide_general(const tl_core *a, const tl_core *b, float margin, tl_pai
         if (apart > limit) {
             out->normal = guess;
             out->count = 0;
+            out->gap = apart - (a->radius + b->radius);
             return;
         }
         if (apart < 0.0f && collide_again(a, b, margin, guess, apart, cache, out)) {

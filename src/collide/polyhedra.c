@@ -112,6 +112,7 @@ int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pa
         if (axis.separation > margin) {
             out->count = 0;
             out->normal = axis.normal;
+            out->gap = axis.separation;
             return 1;
         }
         if (found != axis.kind) {
