@@ -215,7 +215,8 @@ static void store_contacts(const tl_step *step, uint32_t first, uint32_t last) {
             heads[c].friction[2] = friction[2][k];
             heads[c].twist = g->twist_impulse[k];
             for (uint32_t p = 0; p < g->points; p++) {
-                points[c].p[p].impulse = g->point[p].impulse[k];
+                float impulse = g->point[p].impulse[k];
+                points[c].p[p].impulse = tl_is_finite(impulse) ? impulse : 0.0f;
             }
         }
     }
