@@ -309,6 +309,7 @@ static int edge_manifold(const tl_core *a, const tl_core *b, const box_axis *axi
 void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_cache *cache, tl_manifold *out) {
     boxes x;
     box_axis axis;
+    tl_pair_cache past = *cache;
     set_boxes(a, b, &x);
     uint32_t last = (cache->word[0] ^ TL_CACHE_BOXES) & 0xffffu;
     out->count = 0;
@@ -321,8 +322,8 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
     }
     if (cache->word[0] == TL_CACHE_AXIS) {
         uint32_t ia = 0, ib = 0;
-        talus_vec3 va, vb, past = tl_cache_axis(cache, out->normal);
-        out->gap = tl_core_separation(a, b, past, &ia, &ib, &va, &vb);
+        talus_vec3 va, vb, n = tl_cache_axis(cache, out->normal);
+        out->gap = tl_core_separation(a, b, n, &ia, &ib, &va, &vb);
         if (out->gap > margin) {
             return;
         }
@@ -360,6 +361,9 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
             return;
         }
     }
-    tl_cache_keep_axis(cache, n);
+    *cache = past;
+    if (!tl_cache_has_simplex(cache)) {
+        tl_cache_keep_axis(cache, n);
+    }
     tl_collide_general(a, b, margin, cache, out);
 }

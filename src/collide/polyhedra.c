@@ -3,6 +3,9 @@
  * apart, and else bounds the search. Metres, in A's frame. */
 #include "collide/polyhedra.h"
 
+/* Faces closer to flush than this, about 1.5 degrees, may prove at once that the overlap along them is the least. */
+#define FLUSH_COS -0.99966f
+
 static void edge_features(const tl_poly *p, const tl_poly *q, uint32_t ep, uint32_t eq, talus_vec3 n, tl_feature *fp,
                           tl_feature *fq) {
     /* n looks from P to Q; a face that is all but square with it stands for the edge */
@@ -28,36 +31,43 @@ static void edge_features(const tl_poly *p, const tl_poly *q, uint32_t ep, uint3
     tl_feature_edge(q->core, hq[0].origin, hq[1].origin, eq, fq);
 }
 
-static void axis_manifold(const tl_poly *a, const tl_poly *b, const tl_axis *axis, float margin, float tolerance,
-                          tl_manifold *out) {
-    tl_feature fa, fb;
-    tl_touch touch;
-    touch.normal = axis->normal;
-    touch.separation = axis->separation;
+/* The features that meet along an axis. */
+static void axis_features(const tl_poly *a, const tl_poly *b, const tl_axis *axis, tl_feature *fa, tl_feature *fb) {
     switch (axis->kind) {
     case TL_AXIS_FACE_A:
-        tl_feature_face(a->core, axis->a, &fa);
-        tl_feature_find(b->core, tl_neg(axis->normal), 0, &fb);
+        tl_feature_face(a->core, axis->a, fa);
+        tl_feature_find(b->core, tl_neg(axis->normal), 0, fb);
         break;
     case TL_AXIS_FACE_B:
-        tl_feature_find(a->core, axis->normal, 0, &fa);
-        tl_feature_face(b->core, axis->b, &fb);
+        tl_feature_find(a->core, axis->normal, 0, fa);
+        tl_feature_face(b->core, axis->b, fb);
         break;
     case TL_AXIS_EDGES:
     case TL_AXIS_NONE:
     default:
-        edge_features(a, b, axis->a, axis->b, axis->normal, &fa, &fb);
+        edge_features(a, b, axis->a, axis->b, axis->normal, fa, fb);
         break;
     }
-    tl_manifold_build(&fa, &fb, &touch, margin, tolerance, out);
+}
+
+static void axis_manifold(const tl_axis *axis, const tl_feature *fa, const tl_feature *fb, float margin,
+                          float tolerance, tl_manifold *out) {
+    tl_touch touch;
+    touch.normal = axis->normal;
+    touch.separation = axis->separation;
+    tl_manifold_build(fa, fb, &touch, margin, tolerance, out);
 }
 
 int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pair_cache *cache, tl_manifold *out) {
     tl_poly pa, pb;
     tl_sat sat;
     tl_axis axis;
+    tl_feature fa, fb;
     if (!tl_poly_init(a, &pa) || !tl_poly_init(b, &pb)) {
         return 0;
+    }
+    if (tl_cache_has_simplex(cache) && tl_collide_apart(a, b, margin, cache, out)) {
+        return 1;
     }
     talus_vec3 between = tl_sub(tl_core_place(b, pb.center), pa.center), va, vb;
     talus_vec3 n = tl_cache_axis(cache, tl_normalize_or(between, tl_v(0.0f, 1.0f, 0.0f)));
@@ -70,6 +80,9 @@ int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pa
         tl_cache_keep_axis(cache, n);
         return 1;
     }
+    if (known > 0.0f && tl_collide_apart(a, b, margin, cache, out)) {
+        return 1;
+    }
     float tolerance = tl_touch_tolerance(a, b);
     sat.a = &pa;
     sat.b = &pb;
@@ -79,18 +92,32 @@ int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pa
     sat.point[0] = tl_sub(vb, va);
     sat.point_count = 1;
     tl_sat_faces(&sat, &axis);
+    tl_axis_kind found = TL_AXIS_NONE;
     if (axis.separation <= 0.0f) {
+        if (axis.kind != TL_AXIS_NONE) {
+            axis_features(&pa, &pb, &axis, &fa, &fb);
+            found = axis.kind;
+            if (tl_dot(fa.normal, fb.normal) < FLUSH_COS) {
+                axis_manifold(&axis, &fa, &fb, margin, tolerance, out);
+                if (tl_is_proven(out, between)) {
+                    tl_cache_keep_axis(cache, axis.normal);
+                    return 1;
+                }
+            }
+        }
         tl_sat_edges(&sat, &axis);
     }
     if (axis.kind != TL_AXIS_NONE) {
-        n = axis.normal;
-        tl_cache_keep_axis(cache, n);
-        out->normal = n;
+        tl_cache_keep_axis(cache, axis.normal);
         if (axis.separation > margin) {
-            out->gap = axis.separation;
+            out->count = 0;
+            out->normal = axis.normal;
             return 1;
         }
-        axis_manifold(&pa, &pb, &axis, margin, tolerance, out);
+        if (found != axis.kind) {
+            axis_features(&pa, &pb, &axis, &fa, &fb);
+        }
+        axis_manifold(&axis, &fa, &fb, margin, tolerance, out);
         if (tl_is_realised(out, axis.separation, tolerance)) {
             return 1;
         }

@@ -10,7 +10,6 @@ int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pa
 
 /* The same for two boxes. */
 void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_cache *cache, tl_manifold *out);
-#define TL_CACHE_BOXES 0x424f0000u /* in the low half of the first word: the number of the axis that was best */
 
 /* Apart along a normal that features realise: no pair of points is nearer than the axis says, and some are as near. */
 static inline int tl_is_realised(const tl_manifold *m, float separation, float tolerance) {

@@ -157,6 +157,35 @@ talus_vec3 tl_core_support_local(const tl_core *core, talus_vec3 d, uint32_t *in
     }
 }
 
+uint32_t tl_core_vertex_count(const tl_core *core) {
+    switch (core->kind) {
+    case TL_CORE_POINT:
+        return 1;
+    case TL_CORE_SEGMENT:
+        return 2;
+    case TL_CORE_BOX:
+        return 8;
+    case TL_CORE_HULL:
+        return core->hull->vertex_count;
+    case TL_CORE_DROP:
+    case TL_CORE_FRUSTUM:
+    default:
+        return 0;
+    }
+}
+
+talus_vec3 tl_core_vertex(const tl_core *core, uint32_t index) {
+    talus_vec3 p = tl_v(0.0f, 0.0f, 0.0f);
+    if (core->kind == TL_CORE_SEGMENT) {
+        p.y = index ? core->half_height : -core->half_height;
+    } else if (core->kind == TL_CORE_BOX) {
+        p = tl_box_corner(core->half, index);
+    } else if (core->kind == TL_CORE_HULL) {
+        p = tl_hull_point(core->hull, index);
+    }
+    return tl_core_place(core, p);
+}
+
 talus_vec3 tl_core_support(const tl_core *core, talus_vec3 direction, uint32_t *index) {
     return tl_core_place(core, tl_core_support_local(core, tl_core_rotate_back(core, direction), index));
 }

@@ -38,6 +38,10 @@ talus_vec3 tl_core_support(const tl_core *core, talus_vec3 direction, uint32_t *
 /* The same in the core's own frame. */
 talus_vec3 tl_core_support_local(const tl_core *core, talus_vec3 direction, uint32_t *index);
 
+/* Vertices by the numbers that support points have; a core of round parts has none to tell apart. */
+uint32_t tl_core_vertex_count(const tl_core *core);
+talus_vec3 tl_core_vertex(const tl_core *core, uint32_t index);
+
 /* The vertex of a hull furthest along a direction of its own frame, from any valid vertex on. */
 uint32_t tl_hull_support(const talus_hull *hull, talus_vec3 direction, uint32_t start);
 
