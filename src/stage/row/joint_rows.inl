@@ -196,6 +196,10 @@ static void store_joints(const tl_step *step, uint32_t first, uint32_t last) {
                     sum[k] += rows[r].n[k][lane] * strength;
                 }
             }
+            for (uint32_t k = 0; k < 3u; k++) {
+                s->force[k] = tl_is_finite(s->force[k]) ? s->force[k] : 0.0f;
+                s->torque[k] = tl_is_finite(s->torque[k]) ? s->torque[k] : 0.0f;
+            }
         }
     }
 }
