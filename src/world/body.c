@@ -212,6 +212,9 @@ talus_status talus_body_set_pose(talus_world *world, talus_body body, const talu
     if (!tl_is_finite_pose(pose)) {
         return TALUS_NOT_FINITE;
     }
+    if (tl_quat_dot(pose->rotation, pose->rotation) == 0.0f) {
+        return TALUS_BAD_ARGUMENT;
+    }
     tl_header *h = tl_header_of(world);
     wake_around(h, i);
     talus_pose origin = {pose->position, tl_quat_normalize(pose->rotation)};
@@ -240,6 +243,9 @@ talus_status talus_body_move_to(talus_world *world, talus_body body, const talus
     }
     if (!tl_is_finite_pose(pose)) {
         return TALUS_NOT_FINITE;
+    }
+    if (tl_quat_dot(pose->rotation, pose->rotation) == 0.0f) {
+        return TALUS_BAD_ARGUMENT;
     }
     talus_pose origin = {pose->position, tl_quat_normalize(pose->rotation)};
     talus_pose frame = tl_row_pose_of(&tl_body_frame(h)[i]), goal = tl_pose_mul(&origin, &frame);
@@ -380,7 +386,10 @@ talus_status talus_body_set_damping(talus_world *world, talus_body body, float l
     if (status != TALUS_OK) {
         return status;
     }
-    if (!tl_is_finite(linear) || !tl_is_finite(angular) || linear < 0.0f || angular < 0.0f) {
+    if (!tl_is_finite(linear) || !tl_is_finite(angular)) {
+        return TALUS_NOT_FINITE;
+    }
+    if (linear < 0.0f || angular < 0.0f) {
         return TALUS_BAD_ARGUMENT;
     }
     tl_body_inertia *in = &tl_body_inertias(tl_header_of(world))[i];

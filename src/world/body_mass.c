@@ -145,13 +145,16 @@ talus_status talus_body_get_mass(const talus_world *world, talus_body body, talu
     return status;
 }
 
-/* Symmetric, with a non-negative diagonal, and no moment larger than the sum of the two others by more than rounding.
- */
+/* Symmetric, with principal moments that are not negative, up to rounding. */
 static int is_inertia(const talus_mat3 *m) {
-    float scale = tl_max(m->x.x, tl_max(m->y.y, m->z.z)), slack = 1e-4f * scale;
-    return m->x.x >= 0.0f && m->y.y >= 0.0f && m->z.z >= 0.0f && tl_abs(m->x.y - m->y.x) <= slack &&
-           tl_abs(m->x.z - m->z.x) <= slack && tl_abs(m->y.z - m->z.y) <= slack && tl_abs(m->x.y) <= scale &&
-           tl_abs(m->x.z) <= scale && tl_abs(m->y.z) <= scale;
+    float scale = tl_max(m->x.x, tl_max(m->y.y, m->z.z)), slack = 1e-4f * scale, moment[3];
+    talus_quat axes;
+    if (m->x.x < 0.0f || m->y.y < 0.0f || m->z.z < 0.0f || tl_abs(m->x.y - m->y.x) > slack ||
+        tl_abs(m->x.z - m->z.x) > slack || tl_abs(m->y.z - m->z.y) > slack) {
+        return 0;
+    }
+    tl_principal_axes(m, &axes, moment);
+    return moment[0] >= -slack && moment[1] >= -slack && moment[2] >= -slack;
 }
 
 talus_status talus_body_set_mass(talus_world *world, talus_body body, const talus_mass *mass) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/trig.h"
+#include "stage/stages.h"
 #include "world/world_internal.h"
 
 #define FAR 3.0e38f /* an open side of a range */
@@ -80,6 +81,10 @@ static talus_status check_def(const talus_joint_def *d) {
     if (!tl_is_finite_pose(&d->frame_a) || !tl_is_finite_pose(&d->frame_b) || !tl_is_finite(d->break_force) ||
         !tl_is_finite(d->break_torque)) {
         return TALUS_NOT_FINITE;
+    }
+    if (tl_quat_dot(d->frame_a.rotation, d->frame_a.rotation) == 0.0f ||
+        tl_quat_dot(d->frame_b.rotation, d->frame_b.rotation) == 0.0f) {
+        return TALUS_BAD_ARGUMENT;
     }
     talus_status status = TALUS_OK;
     for (int k = 0; k < 3 && status == TALUS_OK; k++) {
@@ -254,6 +259,7 @@ static void part(tl_header *h, uint32_t a, uint32_t b) {
     for (uint32_t l = tl_bodies(h)[a].first_contact; l != TL_NONE;) {
         uint32_t c = l >> 1, next = links[c].next[l & 1u];
         if (tl_contacts(h)[c].body_a == b || tl_contacts(h)[c].body_b == b) {
+            tl_event_contact_end(h, c);
             tl_contact_end(h, c);
         }
         l = next;

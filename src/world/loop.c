@@ -29,9 +29,14 @@ talus_status talus_loop_advance(talus_loop *loop, double elapsed, uint32_t *step
     uint32_t due = 0;
     if (time >= most + dt) { /* too late by whole steps: give up all but the fraction that shows */
         double whole = (time - most) / dt;
-        whole = whole < 9e15 ? (double)(uint64_t)whole * dt : time - most;
-        loop->dropped += whole;
-        time -= whole;
+        if (whole < 9e15) {
+            whole = (double)(uint64_t)whole * dt;
+            loop->dropped += whole;
+            time -= whole;
+        } else { /* no fraction is left of so long a time */
+            loop->dropped += time - most;
+            time = most;
+        }
     }
     while (time >= dt && due < loop->max_steps) {
         time -= dt;

@@ -5,6 +5,7 @@
 
 #include "geom/mass.h"
 #include "stage/broad/refit.h"
+#include "stage/stages.h"
 #include "world/world_internal.h"
 
 talus_shape_def talus_shape_def_default(void) {
@@ -102,7 +103,9 @@ talus_status talus_shape_create(talus_world *world, talus_body body, const talus
     tl_shape_mask(h)[i] = def->filter.mask;
     tl_shape_user(h)[i] = def->user_data;
     memset(&tl_shape_fat(h)[i], 0, sizeof(tl_row8));
-    tl_island_wake(h, b);
+    if (tl_bodies(h)[b].first_shape != TL_NONE) { /* the first shape of a body that starts asleep lets it sleep */
+        tl_island_wake(h, b);
+    }
     meta->next = tl_bodies(h)[b].first_shape;
     tl_bodies(h)[b].first_shape = i;
     tl_body_update_mass(world, b); /* places the shape and enters it in the list of what moved */
@@ -121,6 +124,7 @@ void tl_shape_remove(tl_header *h, uint32_t i) {
             if (tl_contacts(h)[c].flags & TL_CONTACT_TOUCHING) {
                 tl_island_wake(h, other);
             }
+            tl_event_contact_end(h, c);
             tl_contact_end(h, c);
         }
         l = next;
@@ -245,6 +249,7 @@ talus_status talus_shape_set_filter(talus_world *world, talus_shape shape, const
         uint32_t c = l >> 1, next = links[c].next[l & 1u];
         if (links[c].shape_a == i || links[c].shape_b == i) {
             tl_island_wake(h, tl_contacts(h)[c].body_a == body ? tl_contacts(h)[c].body_b : tl_contacts(h)[c].body_a);
+            tl_event_contact_end(h, c);
             tl_contact_end(h, c);
         }
         l = next;

@@ -150,6 +150,7 @@ static void position(const tl_step *step, uint32_t first, uint32_t last) {
 /* push: takes the displacements of the push into the poses. */
 static void push(const tl_step *step, uint32_t first, uint32_t last) {
     tl_row8 *moves = tl_row_moved(step->h), *poses = tl_row_pose(step->h), *pushes = tl_row_push(step->h);
+    tl_row8 *momenta = tl_row_momentum(step->h);
     const tl_row8 *frames = tl_row_frame(step->h);
     for (uint32_t i = first; i < last; i += TL_LANES) {
         tl_f8 d[8], m[8], p[8], f[8];
@@ -165,7 +166,14 @@ static void push(const tl_step *step, uint32_t first, uint32_t last) {
         }
         q8 q = q8_of(p[3], p[4], p[5], p[6]), frame = q8_of(f[0], f[1], f[2], f[3]);
         v8 w = q8_rotate(frame, v8_mul(v8_of(f[4], f[5], f[6]), v8_of(d[3], d[4], d[5])));
-        q8 turned = q8_normalize(q8_mul(exp_half(turn_of(w, tl_f8_set1(1.0f))), q));
+        q8 turn = exp_half(turn_of(w, tl_f8_set1(1.0f))), turned = q8_normalize(q8_mul(turn, q));
+        tl_f8 l[8];
+        load_eight(momenta + i, l);
+        /* A slender body's spin about its own axis turns with it: a little of the momentum across would be a lot there. */
+        v8 momentum = v8_of(l[0], l[1], l[2]);
+        momentum = v8_select(tl_f8_gt(l[6], tl_f8_zero()), q8_rotate(turn, momentum), momentum);
+        l[0] = momentum.x, l[1] = momentum.y, l[2] = momentum.z;
+        store_eight(momenta + i, l);
         p[3] = turned.x, p[4] = turned.y, p[5] = turned.z, p[6] = turned.w;
         for (int k = 0; k < 6; k++) {
             d[k] = tl_f8_zero();

@@ -5,6 +5,27 @@
 #include "base/eigen.h"
 #include "stage/stages.h"
 
+/* K stays as it is for a step, but the gyroscopic term follows the turning body. Where a joint ties the two together they must
+ * not differ by more than this share. */
+#define MOST_INERTIA_TURN 0.1f
+#define SLENDER 3.0f /* of the least principal inertia against the middle one, inverted */
+
+/* The rate (1/s) at which the inverse inertia changes in the world, as a share of itself: a body that spins about an axis of
+ * symmetry keeps it, a rod that is swung does not. */
+static float inertia_turn(talus_quat frame, talus_vec3 s, talus_vec3 w) {
+    talus_vec3 own = tl_abs3(tl_rotate_back(frame, w)), k = tl_mul(s, s);
+    float x = own.x * tl_abs(k.y - k.z) / tl_max(k.y, k.z), y = own.y * tl_abs(k.z - k.x) / tl_max(k.z, k.x);
+    float z = own.z * tl_abs(k.x - k.y) / tl_max(k.x, k.y);
+    return tl_max(x, tl_max(y, z));
+}
+
+/* Whether one principal inertia is far below the two others. */
+static int is_slender(talus_vec3 s) {
+    float most = tl_max(s.x, tl_max(s.y, s.z)), least = tl_min(s.x, tl_min(s.y, s.z));
+    float middle = s.x + s.y + s.z - most - least;
+    return most * most > SLENDER * middle * middle;
+}
+
 static void rest_row(tl_header *h, uint32_t row) {
     memset(&tl_row_velocity(h)[row], 0, sizeof(tl_row8));
     memset(&tl_row_before(h)[row], 0, sizeof(tl_row8));
@@ -65,6 +86,9 @@ static void fill_row(tl_step *step, uint32_t body, uint32_t row) {
         locked_frame(h, body, locks, &frame, &s);
         gyro = 0.0f;
     }
+    if (gyro > 0.0f && tl_bodies(h)[body].first_joint != TL_NONE && inertia_turn(frame, s, w) * step->dt > MOST_INERTIA_TURN) {
+        gyro = 0.0f;
+    }
     if (!dynamic || (s.x == 0.0f && s.y == 0.0f && s.z == 0.0f && !(locks & 56u))) {
         turns = 0; /* keeps the spin it has, which u then is */
         frame = tl_quat_identity();
@@ -84,6 +108,7 @@ static void fill_row(tl_step *step, uint32_t body, uint32_t row) {
     }
     memset(&tl_row_momentum(h)[row], 0, sizeof(tl_row8));
     tl_row_set6(&tl_row_momentum(h)[row], momentum, u);
+    tl_row_momentum(h)[row].f[6] = is_slender(s) ? 1.0f : 0.0f;
     tl_row_set6(rv, linear, u);
     rv->f[6] = dynamic ? in->inverse_mass : 0.0f;
     rv->f[7] = turns ? 1.0f : 0.0f;

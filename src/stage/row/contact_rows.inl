@@ -210,12 +210,13 @@ static void store_contacts(const tl_step *step, uint32_t first, uint32_t last) {
         tl_f8_storeu(friction[2], f.z);
         for (uint32_t k = 0; k < g->lanes; k++) {
             uint32_t c = g->contact[k];
-            heads[c].friction[0] = friction[0][k];
-            heads[c].friction[1] = friction[1][k];
-            heads[c].friction[2] = friction[2][k];
-            heads[c].twist = g->twist_impulse[k];
+            for (uint32_t d = 0; d < 3u; d++) {
+                heads[c].friction[d] = tl_is_finite(friction[d][k]) ? friction[d][k] : 0.0f;
+            }
+            heads[c].twist = tl_is_finite(g->twist_impulse[k]) ? g->twist_impulse[k] : 0.0f;
             for (uint32_t p = 0; p < g->points; p++) {
-                points[c].p[p].impulse = g->point[p].impulse[k];
+                float impulse = g->point[p].impulse[k];
+                points[c].p[p].impulse = tl_is_finite(impulse) ? impulse : 0.0f;
             }
         }
     }

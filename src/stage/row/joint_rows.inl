@@ -191,10 +191,14 @@ static void store_joints(const tl_step *step, uint32_t first, uint32_t last) {
             for (uint32_t r = 0; r < g->rows; r++) {
                 float *sum = is_linear_row(g->code[r]) ? s->force : s->torque;
                 float strength = rows[r].impulse[lane] * step->inverse_sub;
-                s->impulse[r] = rows[r].impulse[lane];
+                s->impulse[r] = tl_is_finite(rows[r].impulse[lane]) ? rows[r].impulse[lane] : 0.0f;
                 for (uint32_t k = 0; k < 3u; k++) {
                     sum[k] += rows[r].n[k][lane] * strength;
                 }
+            }
+            for (uint32_t k = 0; k < 3u; k++) {
+                s->force[k] = tl_is_finite(s->force[k]) ? s->force[k] : 0.0f;
+                s->torque[k] = tl_is_finite(s->torque[k]) ? s->torque[k] : 0.0f;
             }
         }
     }

@@ -231,8 +231,19 @@ static void warm_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     }
 }
 
-/* Newton's law of restitution, once a step: what met faster than the threshold leaves at its share of that speed. */
+/* m/s^2: how the forces draw b towards a. */
+static v8 closing_of(const float *forces, const tl_contact_group *g) {
+    tl_f8 r[8];
+    tl_f8_load_rows(forces, g->a, r);
+    v8 a = v8_of(r[0], r[1], r[2]);
+    tl_f8_load_rows(forces, g->b, r);
+    return v8_sub(a, v8_of(r[0], r[1], r[2]));
+}
+
+/* Newton's law of restitution, once a step: what met faster than the threshold leaves at its share of that speed, less what
+ * it would have lost on the way to where it stopped short of the surface. */
 static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    const float *moves = tl_row_moved(step->h)->f;
     tl_f8 zero = tl_f8_zero(), threshold = tl_f8_set1(step->h->settings.restitution_speed);
     for (uint32_t i = first; i < last; i++) {
         tl_contact_group *g = &tl_group_pool(step->h)[i];
@@ -242,14 +253,23 @@ static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) 
         pair_velocity p;
         load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
         v8 n = v8_load(g->normal[0]);
-        tl_f8 restitution = tl_f8_load(g->restitution);
+        tl_f8 restitution = tl_f8_load(g->restitution), r[8];
+        tl_f8 closing = v8_dot(n, closing_of(tl_row_force(step->h)->f, g));
+        tl_f8_load_rows(moves, g->a, r);
+        v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
+        tl_f8_load_rows(moves, g->b, r);
+        v8 db = v8_of(r[3], r[4], r[5]);
+        tl_f8 way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
         for (uint32_t k = 0; k < g->points; k++) {
             tl_contact_lane_point *c = &g->point[k];
             v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
             tl_f8 approach = tl_f8_load(c->approach), old = tl_f8_load(c->impulse);
             tl_m8 bounces = tl_m8_and(tl_f8_gt(tl_f8_load(c->peak), zero), tl_f8_gt(approach, threshold));
             bounces = tl_m8_and(bounces, tl_f8_gt(restitution, zero));
-            tl_f8 excess = tl_f8_sub(row_speed(&p, n, ja, jb), tl_f8_mul(restitution, approach));
+            tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
+            tl_f8 leave = tl_f8_mul(restitution, approach), lost = tl_f8_mul(closing, tl_f8_max(gap, zero));
+            leave = tl_f8_sub(tl_f8_mul(leave, leave), tl_f8_add(lost, lost));
+            tl_f8 excess = tl_f8_sub(row_speed(&p, n, ja, jb), tl_f8_sqrt(tl_f8_max(leave, zero)));
             tl_f8 now = tl_f8_max(tl_f8_sub(old, tl_f8_mul(tl_f8_load(c->mass), excess)), zero);
             now = tl_f8_select(bounces, now, old);
             /* What bounced is off: the next step starts it from nothing. */

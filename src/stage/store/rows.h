@@ -24,7 +24,7 @@ typedef struct tl_row8 {
  *   row_velocity, row_before v x y z, u x y z, inverse mass (1/kg), 1 if impulses turn it and 0 if not
  *   row_moved                since the step began: way of the centre x y z, sum of h u x y z, 0, 0
  *   row_push                 displacements that close joints and part what overlaps, as row_velocity
- *   row_momentum             angular momentum x y z (kg m^2/s), u that goes with it, 0, 0
+ *   row_momentum             angular momentum x y z (kg m^2/s), u that goes with it, 1 if it is slender, 0
  *   row_frame                rotation of K's frame x y z w, s x y z, 1 if the gyroscopic term counts
  *   row_force                acceleration x y z, whitened angular acceleration x y z, damping factors of v and of u
  *   shape_place              the shape in the mass frame: x y z, rotation x y z w, largest reach from the centre (m)
