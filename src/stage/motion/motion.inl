@@ -169,7 +169,8 @@ static void push(const tl_step *step, uint32_t first, uint32_t last) {
         q8 turn = exp_half(turn_of(w, tl_f8_set1(1.0f))), turned = q8_normalize(q8_mul(turn, q));
         tl_f8 l[8];
         load_eight(momenta + i, l);
-        /* A slender body's spin about its own axis turns with it: a little of the momentum across would be a lot there. */
+        /* A slender body's spin about its own axis turns with it: a little of the momentum across would be a lot there.
+         */
         v8 momentum = v8_of(l[0], l[1], l[2]);
         momentum = v8_select(tl_f8_gt(l[6], tl_f8_zero()), q8_rotate(turn, momentum), momentum);
         l[0] = momentum.x, l[1] = momentum.y, l[2] = momentum.z;

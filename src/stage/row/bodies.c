@@ -5,13 +5,13 @@
 #include "base/eigen.h"
 #include "stage/stages.h"
 
-/* K stays as it is for a step, but the gyroscopic term follows the turning body. Where a joint ties the two together they must
- * not differ by more than this share. */
+/* K stays as it is for a step, but the gyroscopic term follows the turning body. Where a joint ties the two together
+ * they must not differ by more than this share. */
 #define MOST_INERTIA_TURN 0.1f
 #define SLENDER 3.0f /* of the least principal inertia against the middle one, inverted */
 
-/* The rate (1/s) at which the inverse inertia changes in the world, as a share of itself: a body that spins about an axis of
- * symmetry keeps it, a rod that is swung does not. */
+/* The rate (1/s) at which the inverse inertia changes in the world, as a share of itself: a body that spins about an
+ * axis of symmetry keeps it, a rod that is swung does not. */
 static float inertia_turn(talus_quat frame, talus_vec3 s, talus_vec3 w) {
     talus_vec3 own = tl_abs3(tl_rotate_back(frame, w)), k = tl_mul(s, s);
     float x = own.x * tl_abs(k.y - k.z) / tl_max(k.y, k.z), y = own.y * tl_abs(k.z - k.x) / tl_max(k.z, k.x);
@@ -86,7 +86,8 @@ static void fill_row(tl_step *step, uint32_t body, uint32_t row) {
         locked_frame(h, body, locks, &frame, &s);
         gyro = 0.0f;
     }
-    if (gyro > 0.0f && tl_bodies(h)[body].first_joint != TL_NONE && inertia_turn(frame, s, w) * step->dt > MOST_INERTIA_TURN) {
+    if (gyro > 0.0f && tl_bodies(h)[body].first_joint != TL_NONE &&
+        inertia_turn(frame, s, w) * step->dt > MOST_INERTIA_TURN) {
         gyro = 0.0f;
     }
     if (!dynamic || (s.x == 0.0f && s.y == 0.0f && s.z == 0.0f && !(locks & 56u))) {

@@ -240,8 +240,8 @@ static v8 closing_of(const float *forces, const tl_contact_group *g) {
     return v8_sub(a, v8_of(r[0], r[1], r[2]));
 }
 
-/* Newton's law of restitution, once a step: what met faster than the threshold leaves at its share of that speed, less what
- * it would have lost on the way to where it stopped short of the surface. */
+/* Newton's law of restitution, once a step: what met faster than the threshold leaves at its share of that speed, less
+ * what it would have lost on the way to where it stopped short of the surface. */
 static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     const float *moves = tl_row_moved(step->h)->f;
     tl_f8 zero = tl_f8_zero(), threshold = tl_f8_set1(step->h->settings.restitution_speed);
