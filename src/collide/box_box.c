@@ -280,6 +280,15 @@ static void face_manifold(const tl_core *a, const tl_core *b, const boxes *x, co
     tl_candidates_write(candidates, kept, &touch, out);
 }
 
+/* Whether some face of the other box is within 1.5 degrees of a face axis. */
+static int is_flush(const boxes *x, int number) {
+    float c[3];
+    for (int k = 0; k < 3; ++k) {
+        c[k] = number < 3 ? x->abs_r[number][k] : x->abs_r[k][number - 3];
+    }
+    return tl_max(c[0], tl_max(c[1], c[2])) > 0.99966f;
+}
+
 static int edge_manifold(const tl_core *a, const tl_core *b, const box_axis *axis, talus_vec3 n, float margin,
                          float tolerance, tl_manifold *out) {
     tl_touch touch;
@@ -342,7 +351,14 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
             return;
         }
     }
-    int face = axis.number;
+    int face = axis.number, built = 0;
+    if (axis.separation <= 0.0f && is_flush(&x, face)) {
+        face_manifold(a, b, &x, &axis, n, margin, out);
+        if (tl_is_proven(out, b->t)) {
+            return;
+        }
+        built = 1;
+    }
     best_edges(&x, tolerance - 2e-5f * tl_min(axis.separation, 0.0f), &axis);
     if (axis.number != face) {
         cache->word[0] = TL_CACHE_BOXES ^ (uint32_t)axis.number;
@@ -356,7 +372,9 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
             return;
         }
     } else if (axis.separation <= 0.0f) {
-        face_manifold(a, b, &x, &axis, n, margin, out);
+        if (!built) {
+            face_manifold(a, b, &x, &axis, n, margin, out);
+        }
         if (out->count > 0) {
             return;
         }

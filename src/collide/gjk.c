@@ -21,7 +21,6 @@ static inline vec vec_cross(vec a, vec b) {
     vec r = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     return r;
 }
-static inline double absolute(double x) { return x < 0.0 ? -x : x; }
 
 /* The working simplex: its points as differences, the simplex as the caller sees it, and which of the points support
  * the closest point of the hull, with what weights. */
@@ -180,19 +179,18 @@ static vec reduce(tl_simplex *s) {
     return v;
 }
 
-static talus_vec3 to_direction(vec v) {
-    double m = absolute(v.x) > absolute(v.y) ? absolute(v.x) : absolute(v.y);
-    m = absolute(v.z) > m ? absolute(v.z) : m;
-    return tl_normalize_or(tl_v((float)(v.x / m), (float)(v.y / m), (float)(v.z / m)), tl_v(0.0f, 1.0f, 0.0f));
-}
-
-static float root(double x) {
-    /* a float root and one step of Newton in double */
+/* The root of x, by one step of Newton in double from the float root; 0 for what a float cannot show. */
+static double root(double x) {
     if (!(x > 1e-36)) {
-        return 0.0f;
+        return 0.0;
     }
     double r = (double)sqrtf((float)x);
-    return (float)(0.5 * (r + x / r));
+    return 0.5 * (r + x / r);
+}
+
+static talus_vec3 to_direction(vec v, double length) {
+    double s = 1.0 / length;
+    return tl_v((float)(v.x * s), (float)(v.y * s), (float)(v.z * s));
 }
 
 static int known(const tl_simplex *s, const tl_simplex_vertex *w) {
@@ -233,26 +231,29 @@ tl_gjk_state tl_gjk_run(const tl_core *a, const tl_core *b, talus_vec3 guess, fl
     }
     /* what rounding leaves of a support point, and so of a distance */
     double noise = 2.4e-7 * (double)(a->size + b->size);
+    /* round cores never give the same point again: there the normal is good to a thousandth */
+    double enough = a->top + a->bottom + b->top + b->bottom > 0.0f ? 1e-6 : 1e-7;
     vec v = reduce(s);
-    double d2 = vec_dot(v, v);
-    talus_vec3 n = tl_v(0.0f, 1.0f, 0.0f);
+    double d2 = vec_dot(v, v), d = root(d2);
     tl_simplex kept = *s;
-    for (int i = 0; i < MAX_ITERATIONS; ++i) {
-        if (s->count == 4 || d2 <= noise * noise * 0.25) {
+    for (int i = 0;; ++i) {
+        if (s->count == 4 || d <= noise * 0.5) {
             witness(s, &out->point_a, &out->point_b);
             out->distance = 0.0f;
             return TL_GJK_OVERLAP;
         }
-        n = to_direction(v);
-        float apart = tl_core_separation(a, b, n, &w.ia, &w.ib, &w.a, &w.b);
+        out->normal = to_direction(v, d);
+        if (i == MAX_ITERATIONS) {
+            break;
+        }
+        float apart = tl_core_separation(a, b, out->normal, &w.ia, &w.ib, &w.a, &w.b);
         if (apart > limit) {
             out->distance = apart;
-            out->normal = n;
             return TL_GJK_BEYOND;
         }
         vec p = {(double)w.b.x - (double)w.a.x, (double)w.b.y - (double)w.a.y, (double)w.b.z - (double)w.a.z};
-        double gain = d2 - vec_dot(v, p), d = (double)root(d2);
-        if (gain <= 1e-7 * d2 || gain <= 0.25 * noise * d || known(s, &w)) {
+        double gain = d2 - vec_dot(v, p);
+        if (gain <= enough * d2 || gain <= 0.25 * noise * d || known(s, &w)) {
             break;
         }
         kept = *s;
@@ -265,9 +266,9 @@ tl_gjk_state tl_gjk_run(const tl_core *a, const tl_core *b, talus_vec3 guess, fl
         }
         v = next;
         d2 = next2;
+        d = root(d2);
     }
     witness(s, &out->point_a, &out->point_b);
-    out->distance = root(d2);
-    out->normal = to_direction(v);
+    out->distance = (float)d;
     return TL_GJK_APART;
 }

@@ -171,7 +171,7 @@ void tl_sat_faces(tl_sat *s, tl_axis *best) {
 /* Edges that may carry the axis, in A's frame: the normals beside each, its direction and its start. */
 typedef struct edge_list {
     uint32_t count;
-    uint16_t edge[TL_SAT_EDGES];
+    uint16_t edge[TL_SAT_EDGES + 1u];
     float n1x[TL_SAT_EDGES], n1y[TL_SAT_EDGES], n1z[TL_SAT_EDGES];
     float n2x[TL_SAT_EDGES], n2y[TL_SAT_EDGES], n2z[TL_SAT_EDGES];
     float ex[TL_SAT_EDGES], ey[TL_SAT_EDGES], ez[TL_SAT_EDGES];
@@ -216,18 +216,21 @@ static void mark_faces(const tl_sat *s, const tl_poly *p, const talus_vec3 *poin
 
 static void list_edges(const tl_poly *p, talus_vec3 c, float bar, const float *front, const int32_t *mark,
                        edge_list *out) {
-    uint32_t count = 0;
+    uint32_t open = 0, count = 0;
     for (uint32_t i = 0; i < p->half_edge_count; i += 2u) {
-        const tl_half_edge *e = &p->edges[i];
-        if (mark[e[0].face] & mark[e[1].face]) {
-            continue;
-        }
+        /* written always and kept if open: a branch here would be guessed wrong too often */
+        out->edge[open] = (uint16_t)(i >> 1);
+        open += (mark[p->edges[i].face] & mark[p->edges[i + 1u].face]) == 0;
+    }
+    for (uint32_t k = 0; k < open; ++k) {
+        uint16_t edge = out->edge[k];
+        const tl_half_edge *e = &p->edges[2u * edge];
         float most = tl_max(front[e[0].face], front[e[1].face]);
         talus_vec3 from = poly_point(p, e[0].origin), along = tl_sub(poly_point(p, e[1].origin), from);
         if (most < bar && !edge_reaches(p, e, from, along, c, bar)) {
             continue;
         }
-        out->edge[count] = (uint16_t)(i >> 1);
+        out->edge[count] = edge;
         out->n1x[count] = p->nx[e[0].face];
         out->n1y[count] = p->ny[e[0].face];
         out->n1z[count] = p->nz[e[0].face];
