@@ -57,10 +57,12 @@ static void look_again(const tl_core *a, const tl_core *b, talus_vec3 guess, flo
     }
 }
 
-/* The manifold of a flush overlap that needs no search; 0 if it does. */
+/* The manifold of faces that meet as they did, without a search: apart, where points of both are as near as the face's
+ * normal says; in overlap, where the points prove the normal. 0 if it takes a search. */
 static int meet_again(const tl_core *a, const tl_core *b, float margin, again *g, tl_manifold *out) {
     tl_touch touch;
-    if (!g->is_face || g->separation >= 0.0f || a->radius + b->radius > 0.0f) {
+    float radii = a->radius + b->radius, tolerance = tl_touch_tolerance(a, b);
+    if (!g->is_face || (g->separation < 0.0f && radii > 0.0f)) {
         return 0;
     }
     tl_feature fa = g->a, fb = g->b;
@@ -70,8 +72,12 @@ static int meet_again(const tl_core *a, const tl_core *b, float margin, again *g
         tl_feature_find(b, tl_neg(g->normal), 0, &fb);
     }
     touch.normal = g->normal;
-    touch.separation = g->separation;
-    tl_manifold_build(&fa, &fb, &touch, margin, tl_touch_tolerance(a, b), out);
+    touch.separation = g->separation - radii;
+    tl_manifold_build(&fa, &fb, &touch, margin, tolerance, out);
+    if (g->separation >= 0.0f) {
+        float most = (radii > 0.0f ? 1.0001f : 1.015f) * g->separation + tolerance;
+        return out->count > 0 && tl_manifold_least(out) + radii <= most;
+    }
     talus_vec3 center = a->kind == TL_CORE_HULL ? a->hull->centroid : tl_v(0.0f, 0.0f, 0.0f);
     talus_vec3 other = b->kind == TL_CORE_HULL ? tl_core_place(b, b->hull->centroid) : b->t;
     return tl_is_proven(out, tl_sub(other, center));
@@ -145,14 +151,14 @@ int tl_collide_apart(const tl_core *a, const tl_core *b, float margin, tl_pair_c
     return 1;
 }
 
-/* The overlap that the cached normal shows again; 0 if it shows none. */
+/* What the cached normal shows again; 0 if that is nothing certain. */
 static int collide_again(const tl_core *a, const tl_core *b, float margin, talus_vec3 guess, float apart,
                          tl_pair_cache *cache, tl_manifold *out) {
     again g;
     tl_depth depth;
     tl_touch touch;
     look_again(a, b, guess, apart, &g);
-    if (meet_again(a, b, margin, &g, out)) {
+    if (g.separation - (a->radius + b->radius) <= margin && meet_again(a, b, margin, &g, out)) {
         tl_cache_keep_axis(cache, g.normal);
         return 1;
     }
@@ -179,7 +185,7 @@ void tl_collide_general(const tl_core *a, const tl_core *b, float margin, tl_pai
             out->gap = apart - (a->radius + b->radius);
             return;
         }
-        if (apart < 0.0f && collide_again(a, b, margin, guess, apart, cache, out)) {
+        if (collide_again(a, b, margin, guess, apart, cache, out)) {
             return;
         }
     }
