@@ -147,6 +147,15 @@ typedef struct talus_counters {
 
 talus_status talus_world_get_counters(const talus_world *world, talus_counters *out);
 
+/* The largest errors that the state holds now. O(contacts + joints). */
+typedef struct talus_errors {
+    float overlap;       /* m: of touching surfaces */
+    float joint_linear;  /* m: of locked axes */
+    float joint_angular; /* rad: of locked axes */
+} talus_errors;
+
+talus_status talus_world_measure(const talus_world *world, talus_errors *out);
+
 /* A 64-bit hash of the state: equal worlds have equal hashes on every machine. One pass over the live columns. */
 uint64_t talus_world_hash(const talus_world *world);
 

@@ -60,6 +60,8 @@ static void print_skipped(const run_result *r) {
     printf("  contacts asleep    %10" PRIu64 " of %" PRIu64 " (%.1f%%)\n", r->contacts_sleeping, manifolds,
            percent(r->contacts_sleeping, manifolds));
     printf("  restitution        %10" PRIu64 " of %" PRIu32 " steps\n", r->steps_without_restitution, r->steps);
+    printf("\nworst errors of the second half: overlap %.2f mm, joints %.2f mm and %.4f rad\n",
+           1e3 * (double)r->worst.overlap, 1e3 * (double)r->worst.joint_linear, (double)r->worst.joint_angular);
     printf("\nafter the last step: %" PRIu32 " bodies awake, %" PRIu32 " asleep, %" PRIu32 " islands, %" PRIu32
            " contacts touch with %" PRIu32 " points\n",
            c->awake_bodies, c->sleeping_bodies, c->islands, c->contacts_touching, c->contact_points);
@@ -180,6 +182,9 @@ void report_json(const run_options *options, const gltf_scene *scene, const gltf
     add_number(&out, "ms_per_step_p99", r->p99);
     add_number(&out, "ms_per_step_p999", r->p999);
     add_number(&out, "ms_per_step_max", r->max);
+    add_number(&out, "overlap_m", (double)r->worst.overlap);
+    add_number(&out, "joint_separation_m", (double)r->worst.joint_linear);
+    add_number(&out, "joint_angle_rad", (double)r->worst.joint_angular);
     add_count(&out, "peak_rss_kib", host_peak_rss_kib());
     add_count(&out, "block_bytes", world->block_bytes);
     add_count(&out, "geometry_bytes", world->geometry_bytes);

@@ -222,6 +222,17 @@ static void take_counters(run_result *out, const talus_world *world) {
     }
 }
 
+static float larger(float a, float b) { return a > b ? a : b; }
+
+static void take_errors(run_result *out, const talus_world *world, uint32_t step) {
+    talus_errors e;
+    if (2 * step >= out->steps && talus_world_measure(world, &e) == TALUS_OK) {
+        out->worst.overlap = larger(out->worst.overlap, e.overlap);
+        out->worst.joint_linear = larger(out->worst.joint_linear, e.joint_linear);
+        out->worst.joint_angular = larger(out->worst.joint_angular, e.joint_angular);
+    }
+}
+
 static uint64_t stage_clock(void *context) {
     (void)context;
     return host_clock_ns();
@@ -270,6 +281,7 @@ static int run_steps(runner *r) {
         }
         take_states(r, step, out->step_ms[step - 1]);
         take_counters(out, &r->world->world);
+        take_errors(out, &r->world->world, step);
         show_progress(r->options, step, out->steps, begin, &shown);
     }
     if (shown != 0) {

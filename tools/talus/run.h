@@ -29,6 +29,7 @@ typedef struct run_result {
     uint64_t manifolds_made, manifolds_kept, contacts_sleeping, pairs_made, proxies_refit;
     uint64_t body_steps, sleeping_body_steps, steps_without_restitution;
     uint64_t sensor_begins, sensor_ends;
+    talus_errors worst;       /* over the second half of the steps, when what falls has fallen */
     uint32_t not_finite_step; /* the first one with a NaN or infinity in its states; 0: none */
     uint32_t substeps, iterations, isa;
 } run_result;
