@@ -48,7 +48,10 @@ static inline float face_b(const boxes *x, int j) {
 static inline float edges(const boxes *x, int i, int j, float *along) {
     int i1 = i == 2 ? 0 : i + 1, i2 = i == 0 ? 2 : i - 1, j1 = j == 2 ? 0 : j + 1, j2 = j == 0 ? 2 : j - 1;
     float ra = x->ha[i1] * x->abs_r[i2][j] + x->ha[i2] * x->abs_r[i1][j];
-    float rb = x->hb[j1] * x->abs_r[i][j2] + x->hb[j2] * x->abs_r[i][j1];
+    /* by the axis itself, not by the entry of r that it would be in a matrix without rounding: the sine may be small */
+    float b1 = x->r[i1][j] * x->r[i2][j1] - x->r[i2][j] * x->r[i1][j1];
+    float b2 = x->r[i1][j] * x->r[i2][j2] - x->r[i2][j] * x->r[i1][j2];
+    float rb = x->hb[j1] * tl_abs(b1) + x->hb[j2] * tl_abs(b2);
     *along = x->t[i2] * x->r[i1][j] - x->t[i1] * x->r[i2][j];
     return tl_abs(*along) - (ra + rb);
 }
@@ -354,7 +357,7 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
     int face = axis.number, built = 0;
     if (axis.separation <= 0.0f && is_flush(&x, face)) {
         face_manifold(a, b, &x, &axis, n, margin, out);
-        if (tl_is_proven(out, b->t)) {
+        if (tl_is_proven(out, axis.separation, b->t)) {
             return;
         }
         built = 1;

@@ -51,9 +51,9 @@ float tl_manifold_least(const tl_manifold *m);
 void tl_manifold_meet(const tl_core *a, const tl_core *b, tl_feature *fa, tl_feature *fb, const tl_touch *touch,
                       float margin, tl_manifold *out);
 
-/* Whether the points of an overlap, met along a face's own normal, prove that the way out along it is the shortest.
- * `between` goes from a point inside of A to one inside of B. 0 proves nothing. */
-int tl_is_proven(const tl_manifold *m, talus_vec3 between);
+/* Whether the points of an overlap (separation < 0), met along a face's own normal, prove that the way out along it is
+ * the shortest. `between` goes from a point inside of A to one inside of B. 0 proves nothing. */
+int tl_is_proven(const tl_manifold *m, float separation, talus_vec3 between);
 
 /* Numbers for points: of a vertex of B on A, of a vertex of A on B, of two edges, and of two points. */
 static inline uint32_t tl_point_id(uint32_t kind, uint32_t a, uint32_t b) {

@@ -80,7 +80,7 @@ static int meet_again(const tl_core *a, const tl_core *b, float margin, again *g
     }
     talus_vec3 center = a->kind == TL_CORE_HULL ? a->hull->centroid : tl_v(0.0f, 0.0f, 0.0f);
     talus_vec3 other = b->kind == TL_CORE_HULL ? tl_core_place(b, b->hull->centroid) : b->t;
-    return tl_is_proven(out, tl_sub(other, center));
+    return tl_is_proven(out, g->separation, tl_sub(other, center));
 }
 
 /* GJK from where it ended last time. Beyond is also what is only found to be further apart than `limit` at the end. */

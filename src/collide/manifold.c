@@ -237,17 +237,28 @@ static uint32_t meet_segments(const tl_feature *a, const tl_feature *b, talus_ve
     if (!(t[1] - t[0] > TL_SIDE_SLACK)) {
         return 0;
     }
-    uint32_t count = 0;
+    tl_candidate end[2];
+    float aside[2];
+    talus_vec3 across_u = tl_cross(n, flat);
     for (uint32_t i = 0; i < 2; ++i) {
         talus_vec3 p = tl_mad(a->point[0], t[i], u);
         float s = tl_clamp((t[i] - s0) / (s1 - s0), 0.0f, 1.0f);
-        talus_vec3 q = tl_mad(b->point[0], s, w);
-        float gap = tl_dot(n, tl_sub(q, p));
-        if (gap <= margin) {
-            out[count].p = tl_scale(tl_add(p, q), 0.5f);
-            out[count].gap = gap;
-            out[count].id = id[i];
-            ++count;
+        talus_vec3 q = tl_mad(b->point[0], s, w), d = tl_sub(q, p);
+        end[i].p = tl_scale(tl_add(p, q), 0.5f);
+        end[i].gap = tl_dot(n, d);
+        end[i].id = id[i];
+        aside[i] = tl_dot(across_u, d);
+    }
+    /* beside one another all along, they do not meet along n */
+    uint32_t near = tl_abs(aside[0]) <= tl_abs(aside[1]) ? 0u : 1u;
+    float length = sqrtf(uu), slack = 0.15f * tl_abs(end[near].gap) + TL_SIDE_SLACK * length;
+    if (aside[0] * aside[1] > 0.0f && tl_abs(aside[near]) > slack * length) {
+        return 0;
+    }
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < 2; ++i) {
+        if (end[i].gap <= margin) {
+            out[count++] = end[i];
         }
     }
     return count;

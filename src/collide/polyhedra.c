@@ -99,7 +99,7 @@ int tl_collide_polyhedra(const tl_core *a, const tl_core *b, float margin, tl_pa
             found = axis.kind;
             if (tl_dot(fa.normal, fb.normal) < FLUSH_COS) {
                 axis_manifold(&axis, &fa, &fb, margin, tolerance, out);
-                if (tl_is_proven(out, between)) {
+                if (tl_is_proven(out, axis.separation, between)) {
                     tl_cache_keep_axis(cache, axis.normal);
                     return 1;
                 }

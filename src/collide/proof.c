@@ -5,7 +5,7 @@
  * the depth, no way out is shorter. Metres. */
 #include "collide/feature.h"
 
-int tl_is_proven(const tl_manifold *m, talus_vec3 between) {
+int tl_is_proven(const tl_manifold *m, float separation, talus_vec3 between) {
     if (m->count < 3) {
         return 0;
     }
@@ -18,7 +18,8 @@ int tl_is_proven(const tl_manifold *m, talus_vec3 between) {
     talus_vec3 n = m->normal, u = tl_sub(m->point[1].position, m->point[0].position);
     talus_vec3 w = tl_sub(m->point[2].position, m->point[0].position), x = tl_sub(w, u);
     float longest = sqrtf(tl_max(tl_length2(u), tl_max(tl_length2(w), tl_length2(x))));
-    if (!(shallow > 0.0f && longest > 0.0f)) {
+    /* a deeper point beside the face would want another way out */
+    if (!(deep >= -0.9999f * separation && shallow > 0.0f && longest > 0.0f)) {
         return 0;
     }
     float reach = 2.0f * tl_abs(tl_dot(n, tl_cross(u, w))) / (3.0f * longest);

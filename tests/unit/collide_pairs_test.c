@@ -39,19 +39,20 @@ static void check_manifold(const char *name, const tl_convex *a, const tl_convex
     if (expected > 0.0) {
         tolerance = 0.02 * expected + 1e-5 * big;
     }
+    d_pair p;
+    p.a = a;
+    p.b = b;
+    p.pose = d_pose_of(pose);
     if (m->count == 0) {
         CHECK(expected > (double)margin - tolerance, "%s: no points but separation %g margin %g", name, expected,
               (double)margin);
-        CHECK((double)m->gap <= expected + (exact ? 1e-6 : 1e-4) * big, "%s: a gap of %g but separation %g", name,
+        double proven = fmax(expected, d_separation(&p, d3_unit(d3_of(m->normal))));
+        CHECK((double)m->gap <= proven + (exact ? 1e-6 : 1e-4) * big, "%s: a gap of %g but separation %g", name,
               (double)m->gap, expected);
         CHECK(m->gap > margin, "%s: no points and no gap", name);
         return;
     }
     double s = least(m);
-    d_pair p;
-    p.a = a;
-    p.b = b;
-    p.pose = d_pose_of(pose);
     d3 n = d3_of(m->normal);
     CHECK(fabs(d3_length(n) - 1.0) < 1e-5, "%s: normal of length %g", name, d3_length(n));
     double along = d_separation(&p, d3_unit(n));
@@ -96,6 +97,41 @@ static void check_distance(const char *name, const tl_convex *a, const tl_convex
     }
 }
 
+/* Turned by any multiple of a right angle about each axis, and tilted by up to `tilt`. */
+static talus_quat nearly_square(float tilt) {
+    talus_quat q = tl_quat_identity();
+    for (int axis = 0; axis < 3; ++axis) {
+        float s = (float)(brute_u32() & 1u) * 0.70710678f, c = s > 0.0f ? 0.70710678f : 1.0f;
+        talus_quat turn = {axis == 0 ? s : 0.0f, axis == 1 ? s : 0.0f, axis == 2 ? s : 0.0f, c};
+        q = tl_quat_mul(turn, q);
+    }
+    talus_vec3 v = brute_vector(-tilt, tilt);
+    talus_quat small = {v.x, v.y, v.z, 1.0f};
+    return tl_quat_normalize(tl_quat_mul(small, q));
+}
+
+static void compare(const char *name, int exact, const tl_convex *a, const tl_convex *b, const talus_pose *at,
+                    float margin);
+
+/* Polyhedra that all but fit: faces nearly flush, edges nearly parallel, in touch or nearly so along an axis. */
+static void one_flush(int ka, int kb, float tilt) {
+    char name[96];
+    uint64_t state = brute_state;
+    tl_convex a = brute_shape(ka, 0.3f, 1.0f), b = brute_shape(kb, 0.3f, 1.0f);
+    talus_pose pose;
+    pose.rotation = nearly_square(tilt);
+    talus_vec3 along = tl_v(1.0f, 0.0f, 0.0f), aside = brute_vector(-1.0f, 1.0f);
+    uint32_t axis = brute_u32() % 3u;
+    along = axis == 0 ? along : axis == 1 ? tl_v(0.0f, 1.0f, 0.0f) : tl_v(0.0f, 0.0f, 1.0f);
+    d_pose d = d_pose_of(&pose);
+    double reach = d_reach(&a, d3_of(along)) + d_reach(&b, d_rotate_back(&d, d3_scale(d3_of(along), -1.0)));
+    pose.position =
+        tl_mad(tl_mad(aside, -tl_dot(aside, along), along), (float)reach + brute_range(-0.02f, 0.02f), along);
+    snprintf(name, sizeof name, "%s-%s flush seed %llu", brute_kind_name[ka], brute_kind_name[kb],
+             (unsigned long long)state);
+    compare(name, 1, &a, &b, &pose, 0.05f);
+}
+
 static void one_pair(int ka, int kb, float low, float high, float margin, float spread) {
     char name[96];
     uint64_t state = brute_state;
@@ -109,6 +145,13 @@ static void one_pair(int ka, int kb, float low, float high, float margin, float 
     talus_vec3 direction = brute_direction();
     pose.position = tl_scale(direction, brute_range(0.0f, spread * reach));
     snprintf(name, sizeof name, "%s-%s seed %llu", brute_kind_name[ka], brute_kind_name[kb], (unsigned long long)state);
+    compare(name, is_flat(ka) && is_flat(kb), &a, &b, &pose, margin);
+}
+
+static void compare(const char *name, int exact, const tl_convex *sa, const tl_convex *sb, const talus_pose *at,
+                    float margin) {
+    tl_convex a = *sa, b = *sb;
+    talus_pose pose = *at;
     d3 n;
     double expected;
     if (!d_exact_separation(&a, &b, &pose, &expected, &n)) {
@@ -116,7 +159,6 @@ static void one_pair(int ka, int kb, float low, float high, float margin, float 
     }
     tl_manifold m, w;
     tl_pair_cache cache = {{0, 0, 0, 0}}, other = {{0, 0, 0, 0}};
-    int exact = is_flat(ka) && is_flat(kb);
     tl_collide(&a, &b, &pose, margin, &cache, &m);
     check_manifold(name, &a, &b, &pose, margin, &m, expected, exact);
     tl_collide(&a, &b, &pose, margin, &cache, &w);
@@ -175,12 +217,24 @@ static void unlike_sizes(void **state) {
     assert_int_equal(failures, 0);
 }
 
+static void nearly_flush(void **state) {
+    (void)state;
+    failures = 0;
+    for (int i = 0; i < rounds(400); ++i) {
+        float tilt = i % 4 == 0 ? 0.0f : i % 4 == 1 ? 1e-5f : i % 4 == 2 ? 1e-3f : 2e-2f;
+        one_flush((brute_u32() & 3u) ? BRUTE_BOX : BRUTE_HULL, BRUTE_BOX, tilt);
+        one_flush(BRUTE_BOX, (brute_u32() & 1u) ? BRUTE_HULL : BRUTE_BOX, tilt);
+    }
+    assert_int_equal(failures, 0);
+}
+
 int main(void) {
     brute_seed("collide_pairs_test");
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shapes_of_like_size),
         cmocka_unit_test(large_margin),
         cmocka_unit_test(unlike_sizes),
+        cmocka_unit_test(nearly_flush),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
