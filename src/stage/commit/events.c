@@ -64,16 +64,21 @@ static void tell_begin(tl_header *h, uint32_t contact) {
 static void tell_hit(tl_header *h, const tl_contact_group *g, uint32_t lane, float speed, uint32_t point) {
     const tl_contact_link *l = &tl_contact_links(h)[g->contact[lane]];
     const tl_contact_point_record *r = &tl_points(h)[g->contact[lane]].p[point];
+    talus_pose body = tl_row_pose_of(&tl_row_pose(h)[g->a[lane]]);
+    talus_vec3 at = tl_pose_point(&body, tl_v(r->a[0], r->a[1], r->a[2]));
+    talus_vec3 normal = tl_v(g->normal[0][lane], g->normal[1][lane], g->normal[2][lane]);
+    if (!tl_is_finite3(at) || !tl_is_finite3(normal) || !tl_is_finite(speed)) {
+        return; /* beyond what floats hold: the commit has stopped the body */
+    }
     uint32_t i = next_event(h, &h->events.hit);
     if (i == TL_NONE) {
         return;
     }
-    talus_pose body = tl_row_pose_of(&tl_row_pose(h)[g->a[lane]]);
     talus_hit_event *e = &tl_event_hit(h)[i];
     e->a = handle_of(h, l->shape_a);
     e->b = handle_of(h, l->shape_b);
-    e->point = tl_pose_point(&body, tl_v(r->a[0], r->a[1], r->a[2]));
-    e->normal = tl_v(g->normal[0][lane], g->normal[1][lane], g->normal[2][lane]);
+    e->point = at;
+    e->normal = normal;
     e->speed = speed;
 }
 
