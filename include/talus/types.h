@@ -53,6 +53,9 @@ typedef struct talus_joint {
     uint32_t index, generation;
 } talus_joint;
 
+/* No position handed to a world, in whatever frame, has a coordinate beyond (m); TALUS_BAD_ARGUMENT. */
+#define TALUS_MAX_COORDINATE 1e9f
+
 /* What a call answers. Anything but TALUS_OK means that nothing was changed. */
 typedef enum talus_status {
     TALUS_OK = 0,

@@ -22,16 +22,11 @@ static talus_status check_def(const talus_body_def *d) {
     if ((unsigned)d->type >= TALUS_BODY_TYPE_COUNT || d->locks > 63u) {
         return TALUS_BAD_ARGUMENT;
     }
-    if (!tl_is_finite_pose(&d->pose) || !tl_is_finite3(d->linear_velocity) || !tl_is_finite3(d->angular_velocity) ||
-        !tl_is_finite(d->linear_damping) || !tl_is_finite(d->angular_damping) || !tl_is_finite(d->gravity_scale)) {
+    if (!tl_is_finite3(d->linear_velocity) || !tl_is_finite3(d->angular_velocity) || !tl_is_finite(d->linear_damping) ||
+        !tl_is_finite(d->angular_damping) || !tl_is_finite(d->gravity_scale)) {
         return TALUS_NOT_FINITE;
     }
-    const talus_quat q = d->pose.rotation;
-    if ((q.x == 0.0f && q.y == 0.0f && q.z == 0.0f && q.w == 0.0f) || d->linear_damping < 0.0f ||
-        d->angular_damping < 0.0f) {
-        return TALUS_BAD_ARGUMENT;
-    }
-    return TALUS_OK;
+    return d->linear_damping >= 0.0f && d->angular_damping >= 0.0f ? tl_check_pose(&d->pose) : TALUS_BAD_ARGUMENT;
 }
 
 static int is_zero(talus_vec3 v) { return v.x == 0.0f && v.y == 0.0f && v.z == 0.0f; }
@@ -206,14 +201,11 @@ talus_status talus_body_get_interpolated_pose(const talus_world *world, talus_bo
 talus_status talus_body_set_pose(talus_world *world, talus_body body, const talus_pose *pose) {
     uint32_t i;
     talus_status status = pose ? tl_find_body(world, body, &i) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        status = tl_check_pose(pose);
+    }
     if (status != TALUS_OK) {
         return status;
-    }
-    if (!tl_is_finite_pose(pose)) {
-        return TALUS_NOT_FINITE;
-    }
-    if (tl_quat_dot(pose->rotation, pose->rotation) == 0.0f) {
-        return TALUS_BAD_ARGUMENT;
     }
     tl_header *h = tl_header_of(world);
     wake_around(h, i);
@@ -241,11 +233,9 @@ talus_status talus_body_move_to(talus_world *world, talus_body body, const talus
     if (tl_body_type(&tl_bodies(h)[i]) != TALUS_KINEMATIC || !(dt > 0.0f && dt <= 1.0f)) {
         return TALUS_BAD_ARGUMENT;
     }
-    if (!tl_is_finite_pose(pose)) {
-        return TALUS_NOT_FINITE;
-    }
-    if (tl_quat_dot(pose->rotation, pose->rotation) == 0.0f) {
-        return TALUS_BAD_ARGUMENT;
+    status = tl_check_pose(pose);
+    if (status != TALUS_OK) {
+        return status;
     }
     talus_pose origin = {pose->position, tl_quat_normalize(pose->rotation)};
     talus_pose frame = tl_row_pose_of(&tl_body_frame(h)[i]), goal = tl_pose_mul(&origin, &frame);

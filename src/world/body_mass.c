@@ -163,8 +163,12 @@ talus_status talus_body_set_mass(talus_world *world, talus_body body, const talu
     if (status != TALUS_OK) {
         return status;
     }
-    if (!tl_is_finite(mass->mass) || !tl_is_finite3(mass->center) || !tl_is_finite_mat3(&mass->inertia)) {
+    if (!tl_is_finite(mass->mass) || !tl_is_finite_mat3(&mass->inertia)) {
         return TALUS_NOT_FINITE;
+    }
+    status = tl_check_point(mass->center);
+    if (status != TALUS_OK) {
+        return status;
     }
     if (mass->mass < 0.0f || (mass->mass > 0.0f && mass->mass < 1e-30f) || !is_inertia(&mass->inertia)) {
         return TALUS_BAD_MASS;

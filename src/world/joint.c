@@ -78,15 +78,13 @@ static talus_status check_drive(const talus_drive *d) {
 }
 
 static talus_status check_def(const talus_joint_def *d) {
-    if (!tl_is_finite_pose(&d->frame_a) || !tl_is_finite_pose(&d->frame_b) || !tl_is_finite(d->break_force) ||
-        !tl_is_finite(d->break_torque)) {
+    if (!tl_is_finite(d->break_force) || !tl_is_finite(d->break_torque)) {
         return TALUS_NOT_FINITE;
     }
-    if (tl_quat_dot(d->frame_a.rotation, d->frame_a.rotation) == 0.0f ||
-        tl_quat_dot(d->frame_b.rotation, d->frame_b.rotation) == 0.0f) {
-        return TALUS_BAD_ARGUMENT;
+    talus_status status = tl_check_pose(&d->frame_a);
+    if (status == TALUS_OK) {
+        status = tl_check_pose(&d->frame_b);
     }
-    talus_status status = TALUS_OK;
     for (int k = 0; k < 3 && status == TALUS_OK; k++) {
         const talus_status found[4] = {check_axis(&d->linear[k]), check_axis(&d->angular[k]),
                                        check_drive(&d->linear_drive[k]), check_drive(&d->angular_drive[k])};

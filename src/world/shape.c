@@ -52,14 +52,10 @@ static talus_status check_def(const talus_world *world, const talus_shape_def *d
     if (status != TALUS_OK) {
         return status;
     }
-    if (!tl_is_finite_pose(&d->pose) || !tl_is_finite(d->density)) {
+    if (!tl_is_finite(d->density)) {
         return TALUS_NOT_FINITE;
     }
-    const talus_quat q = d->pose.rotation;
-    if ((q.x == 0.0f && q.y == 0.0f && q.z == 0.0f && q.w == 0.0f) || d->density < 0.0f) {
-        return TALUS_BAD_ARGUMENT;
-    }
-    return TALUS_OK;
+    return d->density >= 0.0f ? tl_check_pose(&d->pose) : TALUS_BAD_ARGUMENT;
 }
 
 talus_status talus_shape_create(talus_world *world, talus_body body, const talus_shape_def *def, talus_shape *out) {

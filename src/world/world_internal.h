@@ -11,6 +11,22 @@ talus_status tl_find_body(const talus_world *world, talus_body body, uint32_t *i
 talus_status tl_find_shape(const talus_world *world, talus_shape shape, uint32_t *index);
 talus_status tl_find_joint(const talus_world *world, talus_joint joint, uint32_t *index);
 
+/* TALUS_NOT_FINITE; TALUS_BAD_ARGUMENT for a coordinate beyond TALUS_MAX_COORDINATE and for a rotation of length 0. */
+static inline talus_status tl_check_point(talus_vec3 p) {
+    if (!tl_is_finite3(p)) {
+        return TALUS_NOT_FINITE;
+    }
+    talus_vec3 far = tl_abs3(p);
+    return tl_max(far.x, tl_max(far.y, far.z)) <= TALUS_MAX_COORDINATE ? TALUS_OK : TALUS_BAD_ARGUMENT;
+}
+static inline talus_status tl_check_pose(const talus_pose *p) {
+    const talus_quat q = p->rotation;
+    if (!tl_is_finite_pose(p)) {
+        return TALUS_NOT_FINITE;
+    }
+    return q.x == 0.0f && q.y == 0.0f && q.z == 0.0f && q.w == 0.0f ? TALUS_BAD_ARGUMENT : tl_check_point(p->position);
+}
+
 /* The pose of the body's origin. */
 talus_pose tl_body_origin(const tl_header *h, uint32_t body);
 

@@ -242,6 +242,24 @@ static void body_numbers(void **state) {
     REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_get_user_data(&world, box, NULL));
     REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_get_mass(&world, box, NULL));
     REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_set_mass(&world, box, NULL));
+    /* further out than the square of a distance may be */
+    talus_pose far = kit_pose(0.0f, 0.0f, -2.0f * TALUS_MAX_COORDINATE);
+    talus_body_def far_def = talus_body_def_default();
+    talus_joint_def far_joint = talus_joint_def_default();
+    talus_shape_def far_shape = talus_shape_def_default();
+    talus_body body;
+    talus_joint joint;
+    talus_shape shape;
+    talus_mass far_mass;
+    OK(talus_body_get_mass(&world, box, &far_mass));
+    far_mass.center = far.position, far_def.pose = far, far_shape.pose = far;
+    far_joint.a = box, far_joint.frame_b = far;
+    REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_set_pose(&world, box, &far));
+    REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_move_to(&world, mover, &far, 0.1f));
+    REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_set_mass(&world, box, &far_mass));
+    REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_create(&world, &far_def, &body));
+    REFUSED(&world, TALUS_BAD_ARGUMENT, talus_shape_create(&world, box, &far_shape, &shape));
+    REFUSED(&world, TALUS_BAD_ARGUMENT, talus_joint_create(&world, &far_joint, &joint));
     REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_sleep(&world, rock));
     REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_destroy(&world, talus_world_ground(&world)));
     /* an impulse whose velocity no float holds */
