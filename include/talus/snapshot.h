@@ -9,16 +9,19 @@
 extern "C" {
 #endif
 
-/* Bytes that a snapshot of the world would have now; 0 for an unsound world. O(1). */
+/* The most bytes that a snapshot of the world may have now, some two or three times what it will have; 0 for an unsound
+ * world. O(columns). */
 size_t talus_world_save_size(const talus_world *world);
 
-/* Writes a snapshot to `out` (4-byte aligned). A copy of the live rows, without the geometry. TALUS_SMALL_BLOCK,
- * TALUS_UNALIGNED. */
-talus_status talus_world_save(const talus_world *world, void *out, size_t bytes);
+/* Writes a snapshot to `out`, of `bytes` >= talus_world_save_size, and its size to `written`. The bytes are the same on
+ * every machine. Without the geometry. O(live rows). TALUS_SMALL_BLOCK. */
+talus_status talus_world_save(const talus_world *world, void *out, size_t bytes, size_t *written);
 
 /* Puts a world of the same capacities back to a snapshot. Handles from before the snapshot hold again; those of objects
- * made since are stale. The instruction set stays as it is. Damaged counts and sizes are refused with TALUS_BAD_BLOB
- * and nothing changed; for bytes that cannot be trusted otherwise ask talus_world_validate afterwards. */
+ * made since are stale. The instruction set stays as it is, and so does what the broad phase knows of shapes that are
+ * where they were; interpolation begins at the restored poses. A snapshot that is damaged, cut off or of other
+ * capacities is refused with TALUS_BAD_BLOB and nothing changed; one that was made to deceive the checksum may leave the
+ * world empty. O(live rows). */
 talus_status talus_world_restore(talus_world *world, const void *snapshot, size_t bytes);
 
 #ifdef __cplusplus

@@ -38,7 +38,7 @@ typedef struct talus_world_def {
     uint32_t body_capacity;
     uint32_t shape_capacity;
     uint32_t joint_capacity;
-    uint32_t contact_capacity; /* pairs of shapes whose boxes overlap */
+    uint32_t contact_capacity; /* pairs of shapes that touch; three times as many more may be near */
     uint32_t event_capacity;   /* of each kind of event, a step */
     /* simulation */
     talus_vec3 gravity;          /* m/s^2 */

@@ -4,7 +4,8 @@
 
 #include "stage/kernels.h"
 
-/* narrow: manifolds of awake pairs; a pair that hardly moved keeps its own. Pairs whose fat boxes parted end. */
+/* narrow: contacts of awake bodies begin, end, and get their manifolds; one that hardly moved keeps its own. Pairs
+ * whose fat boxes parted end. */
 void tl_stage_narrow(tl_step *step);
 
 /* rows: body rows, then contacts and joints in groups of eight that share no moving body. */

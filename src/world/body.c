@@ -34,10 +34,12 @@ static int is_zero(talus_vec3 v) { return v.x == 0.0f && v.y == 0.0f && v.z == 0
 /* Wakes a body with what it fell asleep with, and what lies on it if it is not dynamic. */
 static void wake_around(tl_header *h, uint32_t i) {
     tl_island_wake(h, i);
-    const tl_contact_link *links = tl_contact_links(h);
-    for (uint32_t l = tl_bodies(h)[i].first_contact; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
-        const tl_contact_meta *c = &tl_contacts(h)[l >> 1];
-        tl_island_wake(h, c->body_a == i ? c->body_b : c->body_a);
+    const tl_pair_link *links = tl_pair_links(h);
+    for (uint32_t l = tl_body_links(h)[i].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
+        const tl_pair *p = &tl_pairs(h)[l >> 1];
+        if (p->contact != TL_NONE) {
+            tl_island_wake(h, p->body_a == i ? p->body_b : p->body_a);
+        }
     }
 }
 
@@ -84,7 +86,8 @@ talus_status talus_body_create(talus_world *world, const talus_body_def *def, ta
     meta->generation = generation ? generation : 1u;
     meta->flags =
         (uint32_t)def->type | TL_BODY_ALIVE | (def->can_sleep ? TL_BODY_CAN_SLEEP : 0u) | def->locks << TL_BODY_LOCKS;
-    meta->first_shape = meta->first_contact = meta->first_joint = meta->sleep_next = meta->free_next = TL_NONE;
+    meta->first_shape = meta->first_joint = meta->island = meta->free_next = TL_NONE;
+    tl_body_links(h)[i].first_pair = tl_body_links(h)[i].sleep_next = TL_NONE;
     talus_pose pose = {def->pose.position, tl_quat_normalize(def->pose.rotation)};
     memset(&tl_body_pose(h)[i], 0, sizeof(tl_row8));
     memset(&tl_body_frame(h)[i], 0, sizeof(tl_row8));
@@ -101,7 +104,7 @@ talus_status talus_body_create(talus_world *world, const talus_body_def *def, ta
     tl_body_motion(h)[i] = 0;
     tl_body_colors(h)[i] = 0;
     tl_body_user(h)[i] = def->user_data;
-    tl_body_row(h)[i] = 0;
+    tl_body_row(h)[i] = tl_body_way(h)[i] = 0;
     tl_body_inertia *in = &tl_body_inertias(h)[i];
     memset(in, 0, sizeof *in);
     in->gravity_scale = def->gravity_scale;
@@ -110,7 +113,7 @@ talus_status talus_body_create(talus_world *world, const talus_body_def *def, ta
     if (def->type == TALUS_DYNAMIC && !(def->starts_asleep && def->can_sleep)) {
         tl_body_set_awake(h, i);
     } else if (def->type == TALUS_DYNAMIC) {
-        meta->sleep_next = i;
+        tl_body_fall_asleep(h, i, i);
         memset(&tl_body_velocity(h)[i], 0, sizeof(tl_row8));
     } else if (def->type == TALUS_KINEMATIC) {
         note_kinematic(h, i);

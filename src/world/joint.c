@@ -253,12 +253,18 @@ static talus_status find_end(const talus_world *world, talus_body body, uint32_t
 
 /* Ends contacts that the new joint forbids. */
 static void part(tl_header *h, uint32_t a, uint32_t b) {
-    const tl_contact_link *links = tl_contact_links(h);
-    for (uint32_t l = tl_bodies(h)[a].first_contact; l != TL_NONE;) {
-        uint32_t c = l >> 1, next = links[c].next[l & 1u];
+    uint32_t count = tl_contacts_of(h, a, TL_NONE);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t c = tl_contact_order(h)[k];
         if (tl_contacts(h)[c].body_a == b || tl_contacts(h)[c].body_b == b) {
             tl_event_contact_end(h, c);
-            tl_contact_end(h, c);
+            tl_contact_end(h, c, 0);
+        }
+    }
+    for (uint32_t l = tl_body_links(h)[a].first_pair; l != TL_NONE;) {
+        uint32_t pair = l >> 1, next = tl_pair_links(h)[pair].next[l & 1u];
+        if (tl_pairs(h)[pair].body_a == b || tl_pairs(h)[pair].body_b == b) {
+            tl_pair_end(h, pair);
         }
         l = next;
     }
@@ -298,7 +304,7 @@ talus_status talus_joint_create(talus_world *world, const talus_joint_def *def, 
     j->generation = generation ? generation : 1u;
     j->flags = TL_JOINT_ALIVE | (def->collide_connected ? TL_JOINT_COLLIDE : 0u);
     j->body_a = a, j->body_b = b;
-    j->awake_index = j->free_next = TL_NONE;
+    j->free_next = TL_NONE;
     tl_joint_user(h)[i] = def->user_data;
     store_def(j, def);
     compile(j);

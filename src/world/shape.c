@@ -86,7 +86,6 @@ talus_status talus_shape_create(talus_world *world, talus_body body, const talus
     meta->flags = TL_SHAPE_ALIVE | (def->sensor ? TL_SHAPE_SENSOR : 0u) | (def->events ? TL_SHAPE_EVENTS : 0u);
     h->event_shapes += (meta->flags & (TL_SHAPE_SENSOR | TL_SHAPE_EVENTS)) != 0;
     meta->body = b;
-    meta->node = TL_NONE;
     meta->group = def->filter.group;
     meta->density = def->density;
     talus_geometry *geometry = &tl_shape_geometry(h)[i];
@@ -98,7 +97,6 @@ talus_status talus_shape_create(talus_world *world, talus_body body, const talus
     tl_shape_category(h)[i] = def->filter.category;
     tl_shape_mask(h)[i] = def->filter.mask;
     tl_shape_user(h)[i] = def->user_data;
-    memset(&tl_shape_fat(h)[i], 0, sizeof(tl_row8));
     if (tl_bodies(h)[b].first_shape != TL_NONE) { /* the first shape of a body that starts asleep lets it sleep */
         tl_island_wake(h, b);
     }
@@ -109,37 +107,34 @@ talus_status talus_shape_create(talus_world *world, talus_body body, const talus
     return TALUS_OK;
 }
 
+/* Ends the contacts of a shape and its pairs, and wakes what lay against it. */
+static void part(tl_header *h, uint32_t shape) {
+    uint32_t count = tl_contacts_of(h, tl_shapes(h)[shape].body, shape);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t c = tl_contact_order(h)[k];
+        tl_island_wake(h, tl_contacts(h)[c].body_a);
+        tl_island_wake(h, tl_contacts(h)[c].body_b);
+        tl_event_contact_end(h, c);
+        tl_contact_end(h, c, 0);
+    }
+    tl_pairs_end_apart(h, shape);
+}
+
 void tl_shape_remove(tl_header *h, uint32_t i) {
     tl_shape_meta *meta = &tl_shapes(h)[i];
     uint32_t body = meta->body;
-    const tl_contact_link *links = tl_contact_links(h);
-    for (uint32_t l = tl_bodies(h)[body].first_contact; l != TL_NONE;) {
-        uint32_t c = l >> 1, next = links[c].next[l & 1u];
-        if (links[c].shape_a == i || links[c].shape_b == i) {
-            uint32_t other = tl_contacts(h)[c].body_a == body ? tl_contacts(h)[c].body_b : tl_contacts(h)[c].body_a;
-            if (tl_contacts(h)[c].flags & TL_CONTACT_TOUCHING) {
-                tl_island_wake(h, other);
-            }
-            tl_event_contact_end(h, c);
-            tl_contact_end(h, c);
-        }
-        l = next;
-    }
+    part(h, i);
     uint32_t *at = &tl_bodies(h)[body].first_shape;
     while (*at != i) {
         at = &tl_shapes(h)[*at].next;
     }
     *at = meta->next;
-    if (meta->node != TL_NONE) {
-        tl_tree_remove(h, tl_body_type(&tl_bodies(h)[body]) == TALUS_STATIC ? TL_TREE_STILL : TL_TREE_MOVING,
-                       meta->node);
-    }
+    tl_shape_leave_tree(h, i);
     tl_shape_unmark_moved(h, i);
     h->event_shapes -= (meta->flags & (TL_SHAPE_SENSOR | TL_SHAPE_EVENTS)) != 0;
     uint32_t generation = meta->generation;
     memset(meta, 0, sizeof *meta);
     meta->generation = generation;
-    meta->node = TL_NONE;
     meta->next = h->shapes.free;
     h->shapes.free = i;
     h->shapes.used--;
@@ -209,9 +204,9 @@ talus_status talus_shape_set_material(talus_world *world, talus_shape shape, con
     tl_shape_material(h)[i] = stored(material);
     uint32_t body = tl_shapes(h)[i].body;
     tl_island_wake(h, body);
-    const tl_contact_link *links = tl_contact_links(h);
-    for (uint32_t l = tl_bodies(h)[body].first_contact; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
-        tl_contact_mix(h, l >> 1);
+    uint32_t count = tl_contacts_of(h, body, i);
+    for (uint32_t k = 0; k < count; k++) {
+        tl_contact_mix(h, tl_contact_order(h)[k]);
     }
     return TALUS_OK;
 }
@@ -238,18 +233,8 @@ talus_status talus_shape_set_filter(talus_world *world, talus_shape shape, const
     tl_shape_category(h)[i] = filter->category;
     tl_shape_mask(h)[i] = filter->mask;
     tl_shapes(h)[i].group = filter->group;
-    uint32_t body = tl_shapes(h)[i].body;
-    tl_island_wake(h, body);
-    const tl_contact_link *links = tl_contact_links(h);
-    for (uint32_t l = tl_bodies(h)[body].first_contact; l != TL_NONE;) {
-        uint32_t c = l >> 1, next = links[c].next[l & 1u];
-        if (links[c].shape_a == i || links[c].shape_b == i) {
-            tl_island_wake(h, tl_contacts(h)[c].body_a == body ? tl_contacts(h)[c].body_b : tl_contacts(h)[c].body_a);
-            tl_event_contact_end(h, c);
-            tl_contact_end(h, c);
-        }
-        l = next;
-    }
+    tl_island_wake(h, tl_shapes(h)[i].body);
+    part(h, i);
     tl_shape_mark_moved(h, i);
     return TALUS_OK;
 }

@@ -2,6 +2,7 @@
  * is read through an index before it was checked, so a damaged block gives a status and not a crash. */
 #include <string.h>
 
+#include "base/bits.h"
 #include "world/world_internal.h"
 
 #define UNIT_SLACK 1e-3f /* how far the square of a rotation's length may be from 1 */
@@ -36,15 +37,26 @@ static int header_is_sound(const tl_header *h) {
     return memcmp(capacity, h->capacity, sizeof capacity) == 0 && memcmp(offset, h->offset, sizeof offset) == 0 &&
            talus_isa_available((talus_isa)h->isa) && pool_is_sound(&h->bodies, capacity[TL_COUNT_BODY]) &&
            pool_is_sound(&h->shapes, capacity[TL_COUNT_SHAPE]) && pool_is_sound(&h->nodes, capacity[TL_COUNT_NODE]) &&
-           pool_is_sound(&h->contacts, capacity[TL_COUNT_CONTACT]) &&
-           pool_is_sound(&h->joints, capacity[TL_COUNT_JOINT]) && h->awake_bodies < capacity[TL_COUNT_BODY] &&
-           h->awake_contacts <= capacity[TL_COUNT_CONTACT] && h->awake_joints <= capacity[TL_COUNT_JOINT] &&
-           h->moved_shapes <= capacity[TL_COUNT_SHAPE];
+           pool_is_sound(&h->pairs, capacity[TL_COUNT_PAIR]) && pool_is_sound(&h->joints, capacity[TL_COUNT_JOINT]) &&
+           h->contacts.used <= h->contacts.high && h->contacts.high <= capacity[TL_COUNT_CONTACT] &&
+           h->pairs.used >= h->contacts.used && h->awake_bodies < capacity[TL_COUNT_BODY] &&
+           h->awake_pairs <= h->pairs.used && h->moved_shapes <= h->shapes.used;
 }
 
 /* --- bodies and shapes ------------------------------------------------------------------------ */
 
 static int link_in_range(uint32_t link, uint32_t high) { return link == TL_NONE || link >> 1 < high; }
+
+/* A dynamic body that sleeps is in a ring of its island; no other one is. */
+static int sleep_is_sound(const tl_header *h, uint32_t i) {
+    const tl_body_meta *bodies = tl_bodies(h);
+    uint32_t next = tl_body_links(h)[i].sleep_next, island = bodies[i].island;
+    if (tl_body_type(&bodies[i]) != TALUS_DYNAMIC || (bodies[i].flags & TL_BODY_AWAKE)) {
+        return next == TL_NONE && island == TL_NONE;
+    }
+    return island < h->bodies.high && next < h->bodies.high && bodies[next].island == island &&
+           bodies[island].island == island;
+}
 
 static int body_is_sound(const tl_header *h, uint32_t i) {
     const tl_body_meta *m = &tl_bodies(h)[i];
@@ -54,8 +66,8 @@ static int body_is_sound(const tl_header *h, uint32_t i) {
     uint32_t row = tl_body_row(h)[i];
     int awake = (m->flags & TL_BODY_AWAKE) != 0;
     return tl_body_type(m) < TALUS_BODY_TYPE_COUNT && (m->first_shape == TL_NONE || m->first_shape < h->shapes.high) &&
-           link_in_range(m->first_contact, h->contacts.high) && link_in_range(m->first_joint, h->joints.high) &&
-           (m->sleep_next == TL_NONE || m->sleep_next < h->bodies.high) && awake == (row != 0) &&
+           link_in_range(tl_body_links(h)[i].first_pair, h->pairs.high) &&
+           link_in_range(m->first_joint, h->joints.high) && sleep_is_sound(h, i) && awake == (row != 0) &&
            (row == 0 || (row <= h->awake_bodies && tl_awake_body(h)[row - 1u] == i)) &&
            all_finite(tl_body_pose(h)[i].f, 8) && is_rotation(tl_body_pose(h)[i].f + 3) &&
            is_rotation(tl_body_frame(h)[i].f + 3) && all_finite(tl_body_velocity(h)[i].f, 8);
@@ -66,14 +78,16 @@ static int shape_is_sound(const tl_header *h, uint32_t i) {
     if (m->next != TL_NONE && m->next >= h->shapes.high) {
         return 0;
     }
+    const tl_shape_track *t = &tl_shape_tracks(h)[i];
     if (!(m->flags & TL_SHAPE_ALIVE)) {
-        return 1;
+        return t->node == 0 && t->moved == 0;
     }
     return m->body < h->bodies.high && (tl_bodies(h)[m->body].flags & TL_BODY_ALIVE) &&
            (unsigned)tl_shape_geometry(h)[i].type < TALUS_SHAPE_TYPE_COUNT &&
-           (m->node == TL_NONE || (m->node < h->nodes.high && tl_nodes(h)[m->node].child[0] == TL_NONE &&
-                                   tl_nodes(h)[m->node].child[1] == i)) &&
-           all_finite(tl_shape_place(h)[i].f, 8) && all_finite(tl_shape_fat(h)[i].f, 8);
+           (t->node == 0 || (t->node <= h->nodes.high && tl_nodes(h)[t->node - 1u].child[0] == TL_NONE &&
+                             tl_nodes(h)[t->node - 1u].child[1] == i)) &&
+           (t->moved == 0 || (t->moved <= h->moved_shapes && tl_moved_shape(h)[t->moved - 1u] == i)) &&
+           all_finite(tl_shape_place(h)[i].f, 8) && all_finite(&t->fat.lower.x, 3) && all_finite(&t->fat.upper.x, 3);
 }
 
 /* Whether the lists of shapes reach every living shape once. */
@@ -115,7 +129,7 @@ static int tree_is_sound(const tl_header *h, int tree) {
             i = n->child[0];
             continue;
         }
-        if (n->child[1] >= h->shapes.high || tl_shapes(h)[n->child[1]].node != i) {
+        if (n->child[1] >= h->shapes.high || tl_shape_tracks(h)[n->child[1]].node != i + 1u) {
             return 0;
         }
         uint32_t parent = n->parent;
@@ -128,42 +142,65 @@ static int tree_is_sound(const tl_header *h, int tree) {
     return 1;
 }
 
-/* --- contacts and joints ---------------------------------------------------------------------- */
+/* --- pairs, contacts and joints --------------------------------------------------------------- */
 
-static int contact_is_sound(const tl_header *h, uint32_t i) {
-    const tl_contact_meta *m = &tl_contacts(h)[i];
-    const tl_contact_link *l = &tl_contact_links(h)[i];
-    if (!(m->flags & TL_CONTACT_ALIVE)) {
-        return l->next[0] == TL_NONE || l->next[0] < h->contacts.high;
+static int pair_is_sound(const tl_header *h, uint32_t i) {
+    const tl_pair *p = &tl_pairs(h)[i];
+    const tl_pair_link *l = &tl_pair_links(h)[i];
+    if (p->shape_b == 0) {
+        return l->next[0] == TL_NONE || l->next[0] < h->pairs.high;
     }
-    if (l->shape_a >= h->shapes.high || l->shape_b >= h->shapes.high || l->shape_a >= l->shape_b ||
-        m->body_a != tl_shapes(h)[l->shape_a].body || m->body_b != tl_shapes(h)[l->shape_b].body ||
-        m->count > TL_MANIFOLD_POINTS || m->color > TL_COLORS) {
+    if (p->shape_a >= p->shape_b || p->shape_b >= h->shapes.high ||
+        !(tl_shapes(h)[p->shape_a].flags & TL_SHAPE_ALIVE) || !(tl_shapes(h)[p->shape_b].flags & TL_SHAPE_ALIVE) ||
+        p->body_a != tl_shapes(h)[p->shape_a].body || p->body_b != tl_shapes(h)[p->shape_b].body) {
         return 0;
     }
     for (unsigned side = 0; side < 2u; side++) {
-        if (!link_in_range(l->next[side], h->contacts.high) || !link_in_range(l->previous[side], h->contacts.high)) {
+        if (!link_in_range(l->next[side], h->pairs.high) || !link_in_range(l->previous[side], h->pairs.high)) {
             return 0;
         }
     }
-    return m->awake_index == TL_NONE ||
-           (m->awake_index < h->awake_contacts && tl_awake_contact(h)[m->awake_index] == i);
+    int awake = tl_body_row(h)[p->body_a] || tl_body_row(h)[p->body_b];
+    if (p->contact != TL_NONE && (p->contact >= h->contacts.high || tl_contact_pair(h)[p->contact] != i)) {
+        return 0;
+    }
+    return p->awake_index == TL_NONE ? !awake
+                                     : p->awake_index < h->awake_pairs && tl_awake_pair(h)[p->awake_index] == i;
 }
 
-/* Whether the lists of contacts reach every living contact from both of its bodies, and the pair table too. */
-static int contact_lists_are_sound(const tl_header *h) {
-    const tl_contact_link *links = tl_contact_links(h);
+static int contact_is_sound(const tl_header *h, uint32_t i) {
+    const tl_contact_meta *m = &tl_contacts(h)[i];
+    int alive = (m->flags & TL_CONTACT_ALIVE) != 0;
+    if (alive != tl_bit_has(tl_contact_alive(h), i)) {
+        return 0;
+    }
+    if (!alive) {
+        return !tl_bit_has(tl_contact_awake(h), i);
+    }
+    if (m->shape_a >= m->shape_b || m->shape_b >= h->shapes.high || m->body_a != tl_shapes(h)[m->shape_a].body ||
+        m->body_b != tl_shapes(h)[m->shape_b].body || m->count > TL_MANIFOLD_POINTS || m->color > TL_COLORS) {
+        return 0;
+    }
+    int awake = tl_body_row(h)[m->body_a] || tl_body_row(h)[m->body_b];
+    uint32_t pair = tl_contact_pair(h)[i];
+    return pair < h->pairs.high && tl_pairs(h)[pair].contact == i && tl_pairs(h)[pair].shape_a == m->shape_a &&
+           tl_pairs(h)[pair].shape_b == m->shape_b && (!awake || tl_bit_has(tl_contact_awake(h), i));
+}
+
+/* Whether the lists of pairs reach every living pair from both of its bodies, and the pair table too. */
+static int pair_lists_are_sound(const tl_header *h) {
+    const tl_pair_link *links = tl_pair_links(h);
     uint32_t seen = 0, slots = 0;
     for (uint32_t b = 0; b < h->bodies.high; b++) {
         if (!(tl_bodies(h)[b].flags & TL_BODY_ALIVE)) {
             continue;
         }
         uint32_t before = TL_NONE;
-        for (uint32_t l = tl_bodies(h)[b].first_contact; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
-            const tl_contact_meta *m = &tl_contacts(h)[l >> 1];
-            uint32_t body = l & 1u ? m->body_b : m->body_a;
-            if (!(m->flags & TL_CONTACT_ALIVE) || body != b || links[l >> 1].previous[l & 1u] != before ||
-                ++seen > 2u * h->contacts.used) {
+        for (uint32_t l = tl_body_links(h)[b].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
+            const tl_pair *p = &tl_pairs(h)[l >> 1];
+            uint32_t body = l & 1u ? p->body_b : p->body_a;
+            if (p->shape_b == 0 || body != b || links[l >> 1].previous[l & 1u] != before ||
+                ++seen > 2u * h->pairs.used) {
                 return 0;
             }
             before = l;
@@ -172,11 +209,11 @@ static int contact_lists_are_sound(const tl_header *h) {
     for (uint32_t i = 0; i < h->capacity[TL_COUNT_SLOT]; i++) {
         uint32_t slot = tl_pair_slot(h)[i];
         slots += slot != 0;
-        if (slot > h->contacts.high || (slot && !(tl_contacts(h)[slot - 1u].flags & TL_CONTACT_ALIVE))) {
+        if (slot > h->pairs.high || (slot && tl_pairs(h)[slot - 1u].shape_b == 0)) {
             return 0;
         }
     }
-    return seen == 2u * h->contacts.used && slots == h->contacts.used;
+    return seen == 2u * h->pairs.used && slots == h->pairs.used;
 }
 
 static int joint_is_sound(const tl_header *h, uint32_t i) {
@@ -193,7 +230,8 @@ static int joint_is_sound(const tl_header *h, uint32_t i) {
             return 0;
         }
     }
-    return j->awake_index == TL_NONE || (j->awake_index < h->awake_joints && tl_awake_joint(h)[j->awake_index] == i);
+    int awake = tl_body_row(h)[j->body_a] || tl_body_row(h)[j->body_b];
+    return !awake || tl_bit_has(tl_joint_awake(h), i);
 }
 
 static int lists_are_sound(const tl_header *h) {
@@ -202,19 +240,14 @@ static int lists_are_sound(const tl_header *h) {
             return 0;
         }
     }
-    for (uint32_t k = 0; k < h->awake_contacts; k++) {
-        if (tl_awake_contact(h)[k] >= h->contacts.high) {
-            return 0;
-        }
-    }
-    for (uint32_t k = 0; k < h->awake_joints; k++) {
-        if (tl_awake_joint(h)[k] >= h->joints.high) {
+    for (uint32_t k = 0; k < h->awake_pairs; k++) {
+        if (tl_awake_pair(h)[k] >= h->pairs.high) {
             return 0;
         }
     }
     for (uint32_t k = 0; k < h->moved_shapes; k++) {
         uint32_t s = tl_moved_shape(h)[k];
-        if (s >= h->shapes.high || !(tl_shapes(h)[s].flags & TL_SHAPE_MOVED)) {
+        if (s >= h->shapes.high || tl_shape_tracks(h)[s].moved != k + 1u) {
             return 0;
         }
     }
@@ -239,6 +272,11 @@ talus_status talus_world_validate(const talus_world *world) {
             return TALUS_BAD_BLOB;
         }
     }
+    for (uint32_t i = 0; i < h->pairs.high; i++) {
+        if (!pair_is_sound(h, i)) {
+            return TALUS_BAD_BLOB;
+        }
+    }
     for (uint32_t i = 0; i < h->contacts.high; i++) {
         if (!contact_is_sound(h, i)) {
             return TALUS_BAD_BLOB;
@@ -249,6 +287,6 @@ talus_status talus_world_validate(const talus_world *world) {
             return TALUS_BAD_BLOB;
         }
     }
-    int ok = shape_lists_are_sound(h) && contact_lists_are_sound(h) && tree_is_sound(h, 0) && tree_is_sound(h, 1);
+    int ok = shape_lists_are_sound(h) && pair_lists_are_sound(h) && tree_is_sound(h, 0) && tree_is_sound(h, 1);
     return ok ? TALUS_OK : TALUS_BAD_BLOB;
 }

@@ -117,7 +117,8 @@ static void make_ground(tl_header *h) {
     tl_body_meta *meta = tl_bodies(h);
     meta->flags = TALUS_STATIC | TL_BODY_ALIVE;
     meta->generation = 1;
-    meta->first_shape = meta->first_contact = meta->first_joint = meta->sleep_next = meta->free_next = TL_NONE;
+    meta->first_shape = meta->first_joint = meta->island = meta->free_next = TL_NONE;
+    tl_body_links(h)->first_pair = tl_body_links(h)->sleep_next = TL_NONE;
     tl_body_pose(h)->f[6] = tl_body_previous(h)->f[6] = tl_body_frame(h)->f[6] = 1.0f;
     tl_body_inertias(h)->gravity_scale = 1.0f;
     h->bodies.high = h->bodies.used = h->bodies.peak = 1;
@@ -148,7 +149,8 @@ talus_status talus_world_init(talus_world *world, const talus_world_def *def, vo
     h->magic = TL_BLOCK_MAGIC, h->version = TL_BLOCK_VERSION;
     h->isa = (uint32_t)isa;
     take_settings(&h->settings, def);
-    h->bodies.free = h->shapes.free = h->nodes.free = h->contacts.free = h->joints.free = TL_NONE;
+    h->bodies.free = h->shapes.free = h->contacts.free = h->joints.free = TL_NONE;
+    h->nodes.free = h->pairs.free = TL_NONE;
     h->root[0] = h->root[1] = TL_NONE;
     make_ground(h);
     world->block = block;

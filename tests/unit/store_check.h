@@ -3,6 +3,7 @@
 #ifndef STORE_CHECK_H
 #define STORE_CHECK_H
 
+#include "base/bits.h"
 #include "stage/broad/tree.h"
 #include "stage/store/lists.h"
 #include "world_kit.h"
@@ -25,67 +26,83 @@ static inline void check_color(const tl_header *h, uint64_t *seen, uint32_t body
     }
 }
 
-static inline void check_contacts(const tl_header *h, uint64_t *seen) {
-    uint32_t alive = 0, slots = 0, awake = 0;
-    for (uint32_t i = 0; i < h->contacts.high; i++) {
-        const tl_contact_meta *m = &tl_contacts(h)[i];
-        const tl_contact_link *l = &tl_contact_links(h)[i];
-        if (!(m->flags & TL_CONTACT_ALIVE)) {
+static inline void check_pairs(const tl_header *h) {
+    uint32_t alive = 0, slots = 0, awake = 0, touching = 0;
+    for (uint32_t i = 0; i < h->pairs.high; i++) {
+        const tl_pair *p = &tl_pairs(h)[i];
+        if (p->shape_b == 0) {
             continue;
         }
         alive++;
-        SOUND(l->shape_a < l->shape_b);
-        SOUND(tl_pair_find(h, l->shape_a, l->shape_b) == i);
-        SOUND(tl_shapes(h)[l->shape_a].body == m->body_a && tl_shapes(h)[l->shape_b].body == m->body_b);
-        SOUND((tl_shapes(h)[l->shape_a].flags & TL_SHAPE_ALIVE) && (tl_shapes(h)[l->shape_b].flags & TL_SHAPE_ALIVE));
-        SOUND(m->awake_index == TL_NONE || tl_awake_contact(h)[m->awake_index] == i);
-        SOUND(m->awake_index == TL_NONE || m->awake_index < h->awake_contacts);
-        SOUND(m->awake_index != TL_NONE || !(tl_body_row(h)[m->body_a] || tl_body_row(h)[m->body_b]));
-        awake += m->awake_index != TL_NONE;
+        SOUND(p->shape_a < p->shape_b);
+        SOUND(tl_pair_find(h, p->shape_a, p->shape_b) == i);
+        SOUND(tl_shapes(h)[p->shape_a].body == p->body_a && tl_shapes(h)[p->shape_b].body == p->body_b);
+        SOUND((tl_shapes(h)[p->shape_a].flags & TL_SHAPE_ALIVE) && (tl_shapes(h)[p->shape_b].flags & TL_SHAPE_ALIVE));
+        SOUND(p->awake_index == TL_NONE || (p->awake_index < h->awake_pairs && tl_awake_pair(h)[p->awake_index] == i));
+        SOUND(p->awake_index != TL_NONE || !(tl_body_row(h)[p->body_a] || tl_body_row(h)[p->body_b]));
+        SOUND(p->contact == TL_NONE || tl_contact_pair(h)[p->contact] == i);
+        awake += p->awake_index != TL_NONE;
+        touching += p->contact != TL_NONE;
+    }
+    for (uint32_t i = 0; i < h->capacity[TL_COUNT_SLOT]; i++) {
+        slots += tl_pair_slot(h)[i] != 0;
+    }
+    SOUND(alive == h->pairs.used && slots == alive && awake == h->awake_pairs && touching == h->contacts.used);
+    uint32_t loose = 0;
+    for (uint32_t i = h->pairs.free; i != TL_NONE; i = tl_pair_links(h)[i].next[0]) {
+        SOUND(i < h->pairs.high && tl_pairs(h)[i].shape_b == 0 && loose++ < h->pairs.high);
+    }
+    SOUND(loose + alive == h->pairs.high);
+}
+
+static inline void check_contacts(const tl_header *h, uint64_t *seen) {
+    uint32_t alive = 0, high = 0;
+    for (uint32_t i = 0; i < h->capacity[TL_COUNT_CONTACT]; i++) {
+        const tl_contact_meta *m = &tl_contacts(h)[i];
+        int awake = tl_bit_has(tl_contact_awake(h), i);
+        SOUND(tl_bit_has(tl_contact_alive(h), i) == ((m->flags & TL_CONTACT_ALIVE) != 0));
+        if (!(m->flags & TL_CONTACT_ALIVE)) {
+            SOUND(!awake);
+            continue;
+        }
+        alive++;
+        high = i + 1u;
+        const tl_pair *p = &tl_pairs(h)[tl_contact_pair(h)[i]];
+        SOUND(p->contact == i && p->shape_a == m->shape_a && p->shape_b == m->shape_b);
+        SOUND(tl_shapes(h)[m->shape_a].body == m->body_a && tl_shapes(h)[m->shape_b].body == m->body_b);
+        SOUND(awake || !(tl_body_row(h)[m->body_a] || tl_body_row(h)[m->body_b]));
         if (m->flags & TL_CONTACT_COLORED) {
             check_color(h, seen, m->body_a, m->color);
             check_color(h, seen, m->body_b, m->color);
         }
     }
-    SOUND(alive == h->contacts.used && awake == h->awake_contacts);
-    for (uint32_t i = 0; i < h->capacity[TL_COUNT_SLOT]; i++) {
-        slots += tl_pair_slot(h)[i] != 0;
-    }
-    SOUND(slots == alive);
-    uint32_t loose = 0;
-    for (uint32_t i = h->contacts.free; i != TL_NONE; i = tl_contact_links(h)[i].next[0]) {
-        SOUND(i < h->contacts.high && !(tl_contacts(h)[i].flags & TL_CONTACT_ALIVE) && loose++ < h->contacts.high);
-    }
-    SOUND(loose + alive == h->contacts.high);
+    SOUND(alive == h->contacts.used && high == h->contacts.high);
 }
 
 static inline void check_joints(const tl_header *h, uint64_t *seen) {
-    uint32_t alive = 0, awake = 0;
+    uint32_t alive = 0;
     for (uint32_t i = 0; i < h->joints.high; i++) {
         const tl_joint_record *j = &tl_joints(h)[i];
         if (!(j->flags & TL_JOINT_ALIVE)) {
             continue;
         }
         alive++;
-        SOUND(j->awake_index == TL_NONE ||
-              (j->awake_index < h->awake_joints && tl_awake_joint(h)[j->awake_index] == i));
-        SOUND(j->awake_index != TL_NONE || !(tl_body_row(h)[j->body_a] || tl_body_row(h)[j->body_b]));
-        awake += j->awake_index != TL_NONE;
+        SOUND(tl_bit_has(tl_joint_awake(h), i) || !(tl_body_row(h)[j->body_a] || tl_body_row(h)[j->body_b]));
         check_color(h, seen, j->body_a, j->color);
         check_color(h, seen, j->body_b, j->color);
     }
-    SOUND(alive == h->joints.used && awake == h->awake_joints);
+    SOUND(alive == h->joints.used);
 }
 
 /* The lists of a body: every link's back link, and no body but this one at its side. Counts the links. */
-static inline void check_body_lists(const tl_header *h, uint32_t b, uint32_t *contacts, uint32_t *joints,
+static inline void check_body_lists(const tl_header *h, uint32_t b, uint32_t *pairs, uint32_t *joints,
                                     uint32_t *shapes) {
     uint32_t before = TL_NONE;
-    for (uint32_t l = tl_bodies(h)[b].first_contact; l != TL_NONE; l = tl_contact_links(h)[l >> 1].next[l & 1u]) {
-        const tl_contact_meta *m = &tl_contacts(h)[l >> 1];
-        SOUND(tl_contact_links(h)[l >> 1].previous[l & 1u] == before && (l & 1u ? m->body_b : m->body_a) == b);
-        SOUND(m->flags & TL_CONTACT_ALIVE);
-        (*contacts)++;
+    for (uint32_t l = tl_body_links(h)[b].first_pair; l != TL_NONE; l = tl_pair_links(h)[l >> 1].next[l & 1u]) {
+        const tl_pair *p = &tl_pairs(h)[l >> 1];
+        SOUND(tl_pair_links(h)[l >> 1].previous[l & 1u] == before && (l & 1u ? p->body_b : p->body_a) == b);
+        SOUND(p->shape_b != 0);
+        (*pairs)++;
         before = l;
     }
     before = TL_NONE;
@@ -107,14 +124,16 @@ static inline void check_sleep(const tl_header *h, uint32_t b) {
     int dynamic = tl_body_is_dynamic(h, b), awake = tl_body_row(h)[b] != 0;
     SOUND(awake == ((m->flags & TL_BODY_AWAKE) != 0));
     SOUND(!awake || tl_awake_body(h)[tl_body_row(h)[b] - 1u] == b);
-    SOUND(!(dynamic && !awake) || m->sleep_next != TL_NONE);
-    SOUND(!(dynamic && awake) || m->sleep_next == TL_NONE);
+    SOUND((dynamic && !awake) == (tl_body_links(h)[b].sleep_next != TL_NONE));
+    SOUND((dynamic && !awake) == (m->island != TL_NONE));
     if (dynamic && !awake) {
         uint32_t i = b, steps = 0;
+        SOUND(m->island <= b && tl_bodies(h)[m->island].island == m->island);
         do {
+            SOUND(tl_bodies(h)[i].island == m->island);
             SOUND(i < h->bodies.high && !tl_body_row(h)[i] && (tl_bodies(h)[i].flags & TL_BODY_ALIVE));
             SOUND(steps++ <= h->bodies.high);
-            i = tl_bodies(h)[i].sleep_next;
+            i = tl_body_links(h)[i].sleep_next;
         } while (i != b);
     }
 }
@@ -142,28 +161,32 @@ static inline void check_store(const talus_world *world) {
     const tl_header *h = tl_header_of(world);
     uint64_t *seen = calloc(h->bodies.high, sizeof *seen);
     assert_non_null(seen);
+    check_pairs(h);
     check_contacts(h, seen);
     check_joints(h, seen);
-    uint32_t alive = 0, awake = 0, contacts = 0, joints = 0, shapes = 0, nodes = 0, moved = 0;
+    uint32_t alive = 0, awake = 0, pairs = 0, joints = 0, shapes = 0, nodes = 0, moved = 0;
     for (uint32_t b = 0; b < h->bodies.high; b++) {
         if (tl_bodies(h)[b].flags & TL_BODY_ALIVE) {
             alive++;
             awake += tl_body_row(h)[b] != 0;
             SOUND(tl_body_colors(h)[b] == seen[b]);
-            check_body_lists(h, b, &contacts, &joints, &shapes);
+            check_body_lists(h, b, &pairs, &joints, &shapes);
             check_sleep(h, b);
         } else {
             SOUND(tl_body_row(h)[b] == 0);
         }
     }
     SOUND(alive == h->bodies.used && awake == h->awake_bodies);
-    SOUND(contacts == 2u * h->contacts.used && joints == 2u * h->joints.used && shapes == h->shapes.used);
+    SOUND(pairs == 2u * h->pairs.used && joints == 2u * h->joints.used && shapes == h->shapes.used);
     for (uint32_t s = 0; s < h->shapes.high; s++) {
-        const tl_shape_meta *m = &tl_shapes(h)[s];
-        if (m->flags & TL_SHAPE_ALIVE) {
-            moved += (m->flags & TL_SHAPE_MOVED) != 0;
-            SOUND(m->node != TL_NONE || (m->flags & TL_SHAPE_MOVED));
-            SOUND(m->node == TL_NONE || tl_nodes(h)[m->node].child[1] == s);
+        const tl_shape_track *t = &tl_shape_tracks(h)[s];
+        if (tl_shapes(h)[s].flags & TL_SHAPE_ALIVE) {
+            moved += t->moved != 0;
+            SOUND(t->node != 0 || t->moved != 0);
+            SOUND(t->node == 0 || tl_nodes(h)[t->node - 1u].child[1] == s);
+            SOUND(t->moved == 0 || tl_moved_shape(h)[t->moved - 1u] == s);
+        } else {
+            SOUND(t->node == 0 && t->moved == 0);
         }
     }
     SOUND(moved == h->moved_shapes);

@@ -122,7 +122,7 @@ static talus_world_def size_world(const gltf_scene *scene, const gltf_build_opti
     def.body_capacity = capped(scene->body_count + statics + 1);
     def.shape_capacity = capped((uint64_t)scene->collider_count + 1);
     def.joint_capacity = capped((uint64_t)scene->joint_count + 1);
-    def.contact_capacity = capped(1024 + 32 * movers);
+    def.contact_capacity = capped(1024 + 16 * movers);
     def.event_capacity = capped(64 + (sensors > 0 ? sensors + movers : 0));
     def.gravity = scene->gravity;
     def.substeps = options->substeps > 0 ? options->substeps : def.substeps;

@@ -45,37 +45,62 @@ static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb 
 }
 
 static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
-    tl_shape_meta *meta = &tl_shapes(h)[shape];
-    int tree = tl_body_type(&tl_bodies(h)[meta->body]) == TALUS_STATIC ? TL_TREE_STILL : TL_TREE_MOVING;
-    if (meta->node != TL_NONE) {
-        tl_tree_remove(h, tree, meta->node);
-    }
-    talus_aabb fat = fattened(h, shape, box, dt);
-    meta->node = tl_tree_insert(h, tree, shape, &fat);
-    tl_row_set6(&tl_shape_fat(h)[shape], fat.lower, fat.upper);
-    meta->motion = tl_body_motion(h)[meta->body];
+    tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    uint32_t body = tl_shapes(h)[shape].body;
+    tl_shape_leave_tree(h, shape);
+    t->still = tl_body_type(&tl_bodies(h)[body]) == TALUS_STATIC;
+    t->fat = fattened(h, shape, box, dt);
+    t->node = tl_tree_insert(h, t->still ? TL_TREE_STILL : TL_TREE_MOVING, shape, &t->fat) + 1u;
+    t->motion = tl_body_motion(h)[body];
+    t->stale = 0;
     h->counters.proxies_refit++;
+}
+
+void tl_shape_leave_tree(tl_header *h, uint32_t shape) {
+    tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    if (t->node) {
+        tl_tree_remove(h, t->still ? TL_TREE_STILL : TL_TREE_MOVING, t->node - 1u);
+        t->node = 0;
+    }
 }
 
 /* Whether a body's motion since a shape was entered, and that of the coming step, are within the fat box's margin
  * whatever their direction: the cheap answer, which needs no box. */
 static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, float dt) {
-    uint32_t moved = tl_body_motion(h)[body] - tl_shapes(h)[shape].motion;
+    const tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    if (t->stale) {
+        return 0;
+    }
+    uint32_t moved = tl_body_motion(h)[body] - t->motion;
     float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
-    return (float)moved * 1e-6f + way < margin_of(h, shape);
+    talus_vec3 far = tl_abs3(tl_row_xyz(&tl_body_pose(h)[body])); /* where boxes are rounded more coarsely */
+    return (float)moved * 1e-6f + way + 1e-6f * (far.x + far.y + far.z) < margin_of(h, shape);
 }
 
-/* Whether the shape at its pose, and on the way of the coming step, is still within its fat box. */
-static int is_within(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
-    const tl_row8 *fat = &tl_shape_fat(h)[shape];
-    talus_aabb outer = {tl_row_xyz(fat), tl_row_345(fat)};
+static talus_aabb swept_of(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
+    if (tl_body_type(&tl_bodies(h)[tl_shapes(h)[shape].body]) == TALUS_STATIC) {
+        return *box; /* as its fat box: the margin is on the other one */
+    }
     talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[tl_shapes(h)[shape].body]), dt),
                zero = tl_v(0.0f, 0.0f, 0.0f);
     float m = h->settings.speculative_margin;
     talus_vec3 margin = tl_v(m, m, m);
     talus_aabb swept = {tl_add(tl_sub(box->lower, margin), tl_min3(way, zero)),
                         tl_add(tl_add(box->upper, margin), tl_max3(way, zero))};
-    return tl_aabb_contains(&outer, &swept);
+    return swept;
+}
+
+talus_aabb tl_shape_swept_box(const tl_header *h, const void *geometry, uint32_t shape, float dt) {
+    talus_aabb box = tl_shape_box(h, geometry, shape);
+    return swept_of(h, shape, &box, dt);
+}
+
+void tl_shapes_settle(tl_header *h, uint32_t body) {
+    for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
+        if (!has_hardly_moved(h, body, s, 0.0f)) {
+            tl_shape_mark_moved(h, s);
+        }
+    }
 }
 
 void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
@@ -88,11 +113,12 @@ void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t body = tl_awake_body(h)[k];
         for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
-            if ((tl_shapes(h)[s].flags & TL_SHAPE_MOVED) || has_hardly_moved(h, body, s, dt)) {
+            tl_shape_track *t = &tl_shape_tracks(h)[s];
+            if (t->moved || has_hardly_moved(h, body, s, dt)) {
                 continue;
             }
-            talus_aabb box = tl_shape_box(h, geometry, s);
-            if (!is_within(h, s, &box, dt)) {
+            talus_aabb box = tl_shape_box(h, geometry, s), swept = swept_of(h, s, &box, dt);
+            if (!tl_aabb_contains(&t->fat, &swept)) {
                 enter(h, s, &box, dt);
                 tl_shape_mark_moved(h, s);
             }
@@ -112,7 +138,7 @@ static int joined(const tl_header *h, uint32_t a, uint32_t b) {
     return 0;
 }
 
-static int may_collide(const tl_header *h, uint32_t a, uint32_t b) {
+int tl_may_collide(const tl_header *h, uint32_t a, uint32_t b) {
     const tl_shape_meta *ma = &tl_shapes(h)[a], *mb = &tl_shapes(h)[b];
     if (ma->body == mb->body || (ma->flags & mb->flags & TL_SHAPE_SENSOR)) {
         return 0;
@@ -132,39 +158,42 @@ static int may_collide(const tl_header *h, uint32_t a, uint32_t b) {
     return ma->body == 0 ? !joined(h, mb->body, ma->body) : !joined(h, ma->body, mb->body);
 }
 
-static void pair(tl_header *h, uint32_t s, uint32_t t) {
+/* Whether the pair is there, or need not be. */
+static int pair(tl_header *h, uint32_t s, uint32_t t) {
     uint32_t a = s < t ? s : t, b = s < t ? t : s;
-    if (!may_collide(h, a, b) || tl_pair_find(h, a, b) != TL_NONE) {
-        return;
+    if (!tl_may_collide(h, a, b) || tl_pair_find(h, a, b) != TL_NONE) {
+        return 1;
     }
-    if (tl_contact_make(h, a, b) == TL_NONE) {
-        h->counters.contacts.dropped++;
-    } else {
-        h->counters.pairs_made++;
+    if (tl_pair_make(h, a, b) == TL_NONE) {
+        return 0;
     }
+    h->counters.pairs_made++;
+    return 1;
+}
+
+/* Makes the pairs of a shape; 0 if there was not room for all. */
+static int pair_shape(tl_header *h, uint32_t shape) {
+    const tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    int all = 1;
+    tl_tree_walk walk;
+    for (int tree = 0; tree < (t->still ? 1 : 2); tree++) {
+        tl_tree_begin(&walk, h, tree, &t->fat);
+        for (uint32_t other = tl_tree_next(&walk, h); other != TL_NONE; other = tl_tree_next(&walk, h)) {
+            all &= pair(h, shape, other);
+        }
+    }
+    return all;
 }
 
 void tl_stage_pairs(tl_header *h) {
-    h->counters.pairs_made = 0;
-    h->counters.contacts.dropped = 0;
     uint32_t kept = 0;
+    h->counters.pairs_made = 0;
     for (uint32_t k = 0; k < h->moved_shapes; k++) {
         uint32_t shape = tl_moved_shape(h)[k];
-        const tl_row8 *fat = &tl_shape_fat(h)[shape];
-        talus_aabb box = {tl_row_xyz(fat), tl_row_345(fat)};
-        int still = tl_body_type(&tl_bodies(h)[tl_shapes(h)[shape].body]) == TALUS_STATIC;
-        uint32_t before = h->counters.contacts.dropped;
-        tl_tree_walk walk;
-        for (int tree = 0; tree < (still ? 1 : 2); tree++) {
-            tl_tree_begin(&walk, h, tree, &box);
-            for (uint32_t other = tl_tree_next(&walk, h); other != TL_NONE; other = tl_tree_next(&walk, h)) {
-                pair(h, shape, other);
-            }
-        }
-        if (h->counters.contacts.dropped != before) { /* asks again in the next step, when there may be room */
+        int all = pair_shape(h, shape);
+        tl_shape_tracks(h)[shape].moved = all ? 0 : kept + 1u;
+        if (!all) { /* the narrow stage looks around it without pairs, and the next step asks again */
             tl_moved_shape(h)[kept++] = shape;
-        } else {
-            tl_shapes(h)[shape].flags &= ~(uint32_t)TL_SHAPE_MOVED;
         }
     }
     h->moved_shapes = kept;

@@ -10,6 +10,15 @@
 tl_convex tl_shape_convex(const tl_header *h, const void *geometry, uint32_t shape);
 talus_aabb tl_shape_box(const tl_header *h, const void *geometry, uint32_t shape);
 
+/* The box with the speculative margin and what the body's velocity adds in dt seconds: what its fat box holds at least.
+ * Shapes whose swept boxes do not overlap are not looked at, whether a pair has them or not. */
+talus_aabb tl_shape_swept_box(const tl_header *h, const void *geometry, uint32_t shape, float dt);
+/* Whether filters, joints and kinds of bodies let two shapes meet. */
+int tl_may_collide(const tl_header *h, uint32_t a, uint32_t b);
+void tl_shape_leave_tree(tl_header *h, uint32_t shape);
+/* Of a body that falls asleep, which refit looks at no more: enters once more what may have left its fat box. */
+void tl_shapes_settle(tl_header *h, uint32_t body);
+
 /* The stage: enlarges boxes by the way of the coming step of dt seconds. */
 void tl_stage_refit(tl_header *h, const void *geometry, float dt);
 /* The stage: pairs of moved shapes with what their fat boxes overlap. */

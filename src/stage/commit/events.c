@@ -21,7 +21,7 @@ static uint32_t next_event(tl_header *h, uint32_t *count) {
 }
 
 static void tell_touch(tl_header *h, uint32_t contact, talus_contact_event *list, uint32_t *count) {
-    const tl_contact_link *l = &tl_contact_links(h)[contact];
+    const tl_contact_meta *l = &tl_contacts(h)[contact];
     uint32_t i = next_event(h, count);
     if (i != TL_NONE) {
         list[i].a = handle_of(h, l->shape_a);
@@ -30,7 +30,7 @@ static void tell_touch(tl_header *h, uint32_t contact, talus_contact_event *list
 }
 
 static void tell_sensor(tl_header *h, uint32_t contact, talus_sensor_event *list, uint32_t *count) {
-    const tl_contact_link *l = &tl_contact_links(h)[contact];
+    const tl_contact_meta *l = &tl_contacts(h)[contact];
     int a_senses = (tl_shapes(h)[l->shape_a].flags & TL_SHAPE_SENSOR) != 0;
     uint32_t i = next_event(h, count);
     if (i != TL_NONE) {
@@ -62,7 +62,7 @@ static void tell_begin(tl_header *h, uint32_t contact) {
 }
 
 static void tell_hit(tl_header *h, const tl_contact_group *g, uint32_t lane, float speed, uint32_t point) {
-    const tl_contact_link *l = &tl_contact_links(h)[g->contact[lane]];
+    const tl_contact_meta *l = &tl_contacts(h)[g->contact[lane]];
     const tl_contact_point_record *r = &tl_points(h)[g->contact[lane]].p[point];
     talus_pose body = tl_row_pose_of(&tl_row_pose(h)[g->a[lane]]);
     talus_vec3 at = tl_pose_point(&body, tl_v(r->a[0], r->a[1], r->a[2]));
@@ -144,13 +144,9 @@ void tl_stage_events(tl_step *step) {
     if (h->event_shapes > 0) {
         for (uint32_t k = 0; k < h->awake_contacts; k++) {
             uint32_t c = tl_awake_contact(h)[k];
-            tl_contact_meta *m = &tl_contacts(h)[c];
-            int touches = (m->flags & TL_CONTACT_TOUCHING) != 0, close = (m->flags & TL_CONTACT_CLOSE) != 0;
-            if ((m->flags & TL_CONTACT_SENSOR) && touches && !close) {
+            const tl_contact_meta *m = &tl_contacts(h)[c];
+            if ((m->flags & TL_CONTACT_SENSOR) && !(m->flags & TL_CONTACT_CLOSE)) {
                 tell_begin(h, c);
-            } else if (close && !touches) {
-                tl_event_contact_end(h, c);
-                m->flags &= ~(uint32_t)TL_CONTACT_CLOSE;
             }
         }
     }

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "stage/broad/refit.h"
+
 /* m/s: a body that gained this much in the second half of its quiet time is speeding up and stays awake. */
 #define GAIN 0.004f
 
@@ -72,25 +74,20 @@ static void find_islands(tl_header *h) {
 static void sleep_islands(tl_header *h, float time) {
     const uint32_t *parent = tl_island_parent(h);
     const float *quiet = tl_island_quiet(h);
-    tl_body_meta *bodies = tl_bodies(h);
     uint32_t slept = 0;
     for (uint32_t k = h->awake_bodies; k-- > 0;) {
         uint32_t b = tl_awake_body(h)[k], root = parent[b];
         if (!tl_body_is_dynamic(h, b) || !(quiet[root] >= time)) {
             continue;
         }
-        if (bodies[root].sleep_next == TL_NONE) {
-            bodies[root].sleep_next = root;
-            h->counters.islands_slept++;
-        }
-        if (b != root) {
-            bodies[b].sleep_next = bodies[root].sleep_next;
-            bodies[root].sleep_next = b;
-        }
+        h->counters.islands_slept += b == root;
+        tl_body_fall_asleep(h, b, root);
         memset(&tl_body_velocity(h)[b], 0, sizeof(tl_row8));
         memset(&tl_body_momentum(h)[b], 0, sizeof(tl_row8));
+        memset(&tl_body_quiets(h)[b], 0, sizeof(tl_body_quiet));
         tl_body_previous(h)[b] = tl_body_pose(h)[b];
         tl_body_clear_awake(h, b);
+        tl_shapes_settle(h, b);
         slept++;
     }
     if (slept) {
@@ -128,10 +125,12 @@ void tl_stage_sleep(tl_header *h, float dt) {
             any |= count_quiet(h, b, dt);
         } else if (!tl_bodies(h)[b].moves) {
             tl_body_clear_awake(h, b);
+            tl_shapes_settle(h, b);
             tl_contacts_refresh(h, b); /* their points were on the body and are in the world from now on */
         }
     }
     if (any && h->settings.enable_sleep) {
+        tl_lists_of_awake(h);
         find_islands(h);
         sleep_islands(h, h->settings.sleep_time);
     }
@@ -141,6 +140,7 @@ void tl_island_sleep(tl_header *h, uint32_t body) {
     if (!tl_body_row(h)[body]) {
         return;
     }
+    tl_lists_of_awake(h);
     find_islands(h);
     uint32_t root = tl_island_parent(h)[body];
     for (uint32_t k = 0; k < h->awake_bodies; k++) {

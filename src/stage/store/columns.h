@@ -1,9 +1,9 @@
 /* The column table: every array of the block, in the order in which they lie in it.
  *
  * X(name, type, count, stage, life, word): `count` names a capacity, `stage` the one stage that writes the column
- * during a step, `life` whether it is part of the state (STATE: hashed, compared, saved), can be found anew from it
- * (INDEX) or lives for one step (STEP), `word` the bytes of its members, which are all of one size so that the hash
- * does not depend on the byte order. */
+ * during a step, `life` whether it is part of the state (STATE: hashed, compared, saved), an index that makes steps
+ * fast and never shows in the state's bits (INDEX: trees, pairs, lists) or lives for one step (STEP), `word` the bytes
+ * of its members, which are all of one size so that the hash does not depend on the byte order. */
 #ifndef TL_COLUMNS_H
 #define TL_COLUMNS_H
 
@@ -15,7 +15,6 @@
     X(body_pose, tl_row8, BODY, COMMIT, STATE, 4)                                                                      \
     X(body_velocity, tl_row8, BODY, COMMIT, STATE, 4)                                                                  \
     X(body_momentum, tl_row8, BODY, COMMIT, STATE, 4)                                                                  \
-    X(body_previous, tl_row8, BODY, COMMIT, STATE, 4)                                                                  \
     X(body_inertias, tl_body_inertia, BODY, COMMANDS, STATE, 4)                                                        \
     X(body_frame, tl_row8, BODY, COMMANDS, STATE, 4)                                                                   \
     X(body_force, tl_row8, BODY, COMMANDS, STATE, 4)                                                                   \
@@ -25,11 +24,13 @@
     X(body_colors, uint64_t, BODY, ISLANDS, STATE, 8)                                                                  \
     X(body_mass, talus_mass, BODY, COMMANDS, STATE, 4)                                                                 \
     X(body_user, uint64_t, BODY, COMMANDS, STATE, 8)                                                                   \
-    X(body_row, uint32_t, BODY, SLEEP, STATE, 4)                                                                       \
-    X(awake_body, uint32_t, BODY, SLEEP, STATE, 4)                                                                     \
+    X(body_previous, tl_row8, BODY, COMMIT, INDEX, 4)                                                                  \
+    X(body_links, tl_body_link, BODY, SLEEP, INDEX, 4)                                                                 \
+    X(body_row, uint32_t, BODY, SLEEP, INDEX, 4)                                                                       \
+    X(awake_body, uint32_t, BODY, SLEEP, INDEX, 4)                                                                     \
+    X(body_way, uint32_t, BODY, NARROW, INDEX, 4)                                                                      \
     /* shapes */                                                                                                       \
     X(shape_place, tl_row8, SHAPE, COMMANDS, STATE, 4)                                                                 \
-    X(shape_fat, tl_row8, SHAPE, REFIT, STATE, 4)                                                                      \
     X(shape_geometry, talus_geometry, SHAPE, COMMANDS, STATE, 4)                                                       \
     X(shapes, tl_shape_meta, SHAPE, COMMANDS, STATE, 4)                                                                \
     X(shape_material, tl_material, SHAPE, COMMANDS, STATE, 4)                                                          \
@@ -37,22 +38,32 @@
     X(shape_mask, uint64_t, SHAPE, COMMANDS, STATE, 8)                                                                 \
     X(shape_pose, talus_pose, SHAPE, COMMANDS, STATE, 4)                                                               \
     X(shape_user, uint64_t, SHAPE, COMMANDS, STATE, 8)                                                                 \
-    X(nodes, tl_tree_node, NODE, REFIT, STATE, 4)                                                                      \
-    X(moved_shape, uint32_t, SHAPE, REFIT, STATE, 4)                                                                   \
+    X(shape_tracks, tl_shape_track, SHAPE, REFIT, INDEX, 4)                                                            \
+    X(nodes, tl_tree_node, NODE, REFIT, INDEX, 4)                                                                      \
+    X(moved_shape, uint32_t, SHAPE, REFIT, INDEX, 4)                                                                   \
+    /* pairs */                                                                                                        \
+    X(pairs, tl_pair, PAIR, PAIRS, INDEX, 4)                                                                           \
+    X(pair_links, tl_pair_link, PAIR, PAIRS, INDEX, 4)                                                                 \
+    X(pair_hints, tl_pair_cache, PAIR, NARROW, INDEX, 4)                                                               \
+    X(pair_slot, uint32_t, SLOT, PAIRS, INDEX, 4)                                                                      \
+    X(awake_pair, uint32_t, PAIR, PAIRS, INDEX, 4)                                                                     \
+    X(new_touch, uint64_t, CONTACT, NARROW, STEP, 8)                                                                   \
     /* contacts */                                                                                                     \
     X(heads, tl_contact_head, CONTACT, NARROW, STATE, 4)                                                               \
     X(points, tl_contact_points, CONTACT, NARROW, STATE, 4)                                                            \
     X(contacts, tl_contact_meta, CONTACT, NARROW, STATE, 4)                                                            \
     X(contact_caches, tl_pair_cache, CONTACT, NARROW, STATE, 4)                                                        \
     X(contact_materials, tl_contact_material, CONTACT, NARROW, STATE, 4)                                               \
-    X(contact_links, tl_contact_link, CONTACT, PAIRS, STATE, 4)                                                        \
-    X(awake_contact, uint32_t, CONTACT, PAIRS, STATE, 4)                                                               \
-    X(pair_slot, uint32_t, SLOT, PAIRS, INDEX, 4)                                                                      \
+    X(contact_pair, uint32_t, CONTACT, NARROW, INDEX, 4)                                                               \
+    X(contact_alive, uint64_t, CONTACTBIT, NARROW, INDEX, 8)                                                           \
+    X(contact_awake, uint64_t, CONTACTBIT, NARROW, INDEX, 8)                                                           \
+    X(awake_contact, uint32_t, CONTACT, NARROW, STEP, 4)                                                               \
     /* joints */                                                                                                       \
     X(joints, tl_joint_record, JOINT, COMMANDS, STATE, 4)                                                              \
     X(joint_states, tl_joint_state, JOINT, COMMIT, STATE, 4)                                                           \
     X(joint_user, uint64_t, JOINT, COMMANDS, STATE, 8)                                                                 \
-    X(awake_joint, uint32_t, JOINT, SLEEP, STATE, 4)                                                                   \
+    X(joint_awake, uint64_t, JOINTBIT, SLEEP, INDEX, 8)                                                                \
+    X(awake_joint, uint32_t, JOINT, NARROW, STEP, 4)                                                                   \
     /* one step's rows */                                                                                              \
     X(row_velocity, tl_row8, ROW, VELOCITY, STEP, 4)                                                                   \
     X(row_before, tl_row8, ROW, VELOCITY, STEP, 4)                                                                     \

@@ -2,65 +2,8 @@
 
 #include <string.h>
 
-/* --- the pair table --------------------------------------------------------------------------- */
-
-static uint32_t hash_pair(uint32_t a, uint32_t b) {
-    uint64_t x = ((uint64_t)a << 32 | b) * 0x9e3779b97f4a7c15u; /* Fibonacci hashing, Knuth TAOCP 3, 6.4 */
-    return (uint32_t)(x >> 32) ^ (uint32_t)(x >> 15);
-}
-
-uint32_t tl_pair_find(const tl_header *h, uint32_t shape_a, uint32_t shape_b) {
-    const uint32_t *slots = tl_pair_slot(h);
-    const tl_contact_link *links = tl_contact_links(h);
-    uint32_t mask = h->capacity[TL_COUNT_SLOT] - 1u;
-    for (uint32_t i = hash_pair(shape_a, shape_b) & mask; slots[i] != 0; i = (i + 1u) & mask) {
-        const tl_contact_link *l = &links[slots[i] - 1u];
-        if (l->shape_a == shape_a && l->shape_b == shape_b) {
-            return slots[i] - 1u;
-        }
-    }
-    return TL_NONE;
-}
-
-static void pair_insert(tl_header *h, uint32_t contact) {
-    uint32_t *slots = tl_pair_slot(h);
-    const tl_contact_link *l = &tl_contact_links(h)[contact];
-    uint32_t mask = h->capacity[TL_COUNT_SLOT] - 1u;
-    uint32_t i = hash_pair(l->shape_a, l->shape_b) & mask;
-    while (slots[i] != 0) {
-        i = (i + 1u) & mask;
-    }
-    slots[i] = contact + 1u;
-}
-
-/* Knuth TAOCP 3, 6.4, algorithm R: closes the gap so that no search ends early. */
-static void pair_remove(tl_header *h, uint32_t contact) {
-    uint32_t *slots = tl_pair_slot(h);
-    const tl_contact_link *links = tl_contact_links(h);
-    uint32_t mask = h->capacity[TL_COUNT_SLOT] - 1u;
-    uint32_t i = hash_pair(links[contact].shape_a, links[contact].shape_b) & mask;
-    while (slots[i] != contact + 1u) {
-        i = (i + 1u) & mask;
-    }
-    for (uint32_t j = (i + 1u) & mask; slots[j] != 0; j = (j + 1u) & mask) {
-        const tl_contact_link *l = &links[slots[j] - 1u];
-        uint32_t home = hash_pair(l->shape_a, l->shape_b) & mask;
-        if (((j - home) & mask) >= ((j - i) & mask)) {
-            slots[i] = slots[j];
-            i = j;
-        }
-    }
-    slots[i] = 0;
-}
-
-void tl_pairs_rebuild(tl_header *h) {
-    memset(tl_pair_slot(h), 0, h->capacity[TL_COUNT_SLOT] * sizeof(uint32_t));
-    for (uint32_t i = 0; i < h->contacts.high; i++) {
-        if (tl_contacts(h)[i].flags & TL_CONTACT_ALIVE) {
-            pair_insert(h, i);
-        }
-    }
-}
+#include "base/bits.h"
+#include "base/sort.h"
 
 /* --- colours ---------------------------------------------------------------------------------- */
 
@@ -99,50 +42,6 @@ void tl_color_give(tl_header *h, uint32_t body_a, uint32_t body_b, uint32_t colo
 
 /* --- contacts --------------------------------------------------------------------------------- */
 
-static void contact_push(tl_header *h, uint32_t contact, unsigned side, uint32_t body) {
-    tl_contact_link *links = tl_contact_links(h);
-    tl_body_meta *meta = &tl_bodies(h)[body];
-    uint32_t first = meta->first_contact;
-    links[contact].next[side] = first;
-    links[contact].previous[side] = TL_NONE;
-    if (first != TL_NONE) {
-        links[first >> 1].previous[first & 1u] = contact << 1 | side;
-    }
-    meta->first_contact = contact << 1 | side;
-}
-
-static void contact_pull(tl_header *h, uint32_t contact, unsigned side, uint32_t body) {
-    tl_contact_link *links = tl_contact_links(h);
-    uint32_t next = links[contact].next[side], previous = links[contact].previous[side];
-    if (previous != TL_NONE) {
-        links[previous >> 1].next[previous & 1u] = next;
-    } else {
-        tl_bodies(h)[body].first_contact = next;
-    }
-    if (next != TL_NONE) {
-        links[next >> 1].previous[next & 1u] = previous;
-    }
-}
-
-static void contact_set_awake(tl_header *h, uint32_t contact) {
-    tl_contact_meta *meta = &tl_contacts(h)[contact];
-    if (meta->awake_index == TL_NONE) {
-        meta->awake_index = h->awake_contacts;
-        tl_awake_contact(h)[h->awake_contacts++] = contact;
-    }
-}
-
-static void contact_clear_awake(tl_header *h, uint32_t contact) {
-    tl_contact_meta *metas = tl_contacts(h);
-    uint32_t *list = tl_awake_contact(h), at = metas[contact].awake_index;
-    if (at != TL_NONE) {
-        uint32_t last = list[--h->awake_contacts];
-        list[at] = last;
-        metas[last].awake_index = at;
-        metas[contact].awake_index = TL_NONE;
-    }
-}
-
 static float combine(float a, uint32_t rule_a, float b, uint32_t rule_b) {
     switch (rule_a < rule_b ? rule_a : rule_b) {
     case TALUS_COMBINE_AVERAGE:
@@ -157,8 +56,8 @@ static float combine(float a, uint32_t rule_a, float b, uint32_t rule_b) {
 }
 
 void tl_contact_mix(tl_header *h, uint32_t contact) {
-    const tl_contact_link *l = &tl_contact_links(h)[contact];
-    const tl_material *a = &tl_shape_material(h)[l->shape_a], *b = &tl_shape_material(h)[l->shape_b];
+    const tl_contact_meta *c = &tl_contacts(h)[contact];
+    const tl_material *a = &tl_shape_material(h)[c->shape_a], *b = &tl_shape_material(h)[c->shape_b];
     tl_contact_material *m = &tl_contact_materials(h)[contact];
     m->static_friction = combine(a->static_friction, a->friction_combine, b->static_friction, b->friction_combine);
     m->dynamic_friction = combine(a->dynamic_friction, a->friction_combine, b->dynamic_friction, b->friction_combine);
@@ -167,86 +66,97 @@ void tl_contact_mix(tl_header *h, uint32_t contact) {
 }
 
 uint32_t tl_contact_make(tl_header *h, uint32_t shape_a, uint32_t shape_b) {
-    uint32_t i = tl_pool_top(&h->contacts, h->capacity[TL_COUNT_CONTACT]);
+    uint64_t *alive = tl_contact_alive(h);
+    uint32_t i = tl_bit_first_free(alive, h->capacity[TL_COUNT_CONTACT]);
     if (i == TL_NONE) {
         return i;
     }
+    tl_bit_add(alive, i);
+    tl_pool *pool = &h->contacts;
+    pool->used++;
+    pool->peak = pool->used > pool->peak ? pool->used : pool->peak;
+    pool->high = i >= pool->high ? i + 1u : pool->high;
     tl_contact_meta *meta = &tl_contacts(h)[i];
-    tl_contact_link *link = &tl_contact_links(h)[i];
-    if (i == h->contacts.free) {
-        h->contacts.free = link->next[0];
-    } else {
-        h->contacts.high++;
-    }
-    h->contacts.used++;
-    h->contacts.peak = h->contacts.used > h->contacts.peak ? h->contacts.used : h->contacts.peak;
     const tl_shape_meta *a = &tl_shapes(h)[shape_a], *b = &tl_shapes(h)[shape_b];
     uint32_t flags = a->flags | b->flags;
-    memset(meta, 0, sizeof *meta);
-    memset(&tl_heads(h)[i], 0, sizeof(tl_contact_head));
-    memset(&tl_points(h)[i], 0, sizeof(tl_contact_points));
-    memset(&tl_contact_caches(h)[i], 0, sizeof(tl_pair_cache));
-    meta->flags = TL_CONTACT_ALIVE | TL_CONTACT_FRESH | (flags & TL_SHAPE_SENSOR ? TL_CONTACT_SENSOR : 0u) |
+    meta->flags = TL_CONTACT_ALIVE | (flags & TL_SHAPE_SENSOR ? TL_CONTACT_SENSOR : 0u) |
                   (flags & TL_SHAPE_EVENTS ? TL_CONTACT_EVENTS : 0u);
+    meta->shape_a = shape_a, meta->shape_b = shape_b;
     meta->body_a = a->body, meta->body_b = b->body;
     meta->color = TL_COLORS;
-    meta->awake_index = TL_NONE;
-    link->shape_a = shape_a, link->shape_b = shape_b;
     tl_contact_mix(h, i);
-    contact_push(h, i, 0, a->body);
-    contact_push(h, i, 1, b->body);
-    pair_insert(h, i);
-    if (tl_body_row(h)[a->body] || tl_body_row(h)[b->body]) {
-        contact_set_awake(h, i);
-    }
+    tl_contact_enter(h, i);
     return i;
 }
 
-void tl_contact_end(tl_header *h, uint32_t contact) {
-    tl_contact_meta *meta = &tl_contacts(h)[contact];
-    tl_contact_link *link = &tl_contact_links(h)[contact];
+void tl_contact_enter(tl_header *h, uint32_t contact) {
+    const tl_contact_meta *meta = &tl_contacts(h)[contact];
+    uint32_t pair = tl_pair_find(h, meta->shape_a, meta->shape_b);
+    if (pair == TL_NONE) {
+        pair = tl_pair_make_for_contact(h, meta->shape_a, meta->shape_b);
+    }
+    tl_pairs(h)[pair].contact = contact;
+    tl_contact_pair(h)[contact] = pair;
+    if (tl_body_row(h)[meta->body_a] || tl_body_row(h)[meta->body_b]) {
+        tl_bit_add(tl_contact_awake(h), contact);
+    }
+}
+
+void tl_contact_clear(tl_header *h, uint32_t contact) {
+    memset(&tl_contacts(h)[contact], 0, sizeof(tl_contact_meta));
+    memset(&tl_heads(h)[contact], 0, sizeof(tl_contact_head));
+    memset(&tl_points(h)[contact], 0, sizeof(tl_contact_points));
+    memset(&tl_contact_caches(h)[contact], 0, sizeof(tl_pair_cache));
+    memset(&tl_contact_materials(h)[contact], 0, sizeof(tl_contact_material));
+}
+
+void tl_contact_end(tl_header *h, uint32_t contact, uint32_t clear) {
+    uint32_t pair = tl_contact_pair(h)[contact];
+    tl_pair_cache hint = tl_contact_caches(h)[contact];
+    const tl_contact_meta *meta = &tl_contacts(h)[contact];
     if (meta->flags & TL_CONTACT_COLORED) {
         tl_color_give(h, meta->body_a, meta->body_b, meta->color);
     }
-    pair_remove(h, contact);
-    contact_clear_awake(h, contact);
-    contact_pull(h, contact, 0, meta->body_a);
-    contact_pull(h, contact, 1, meta->body_b);
-    memset(meta, 0, sizeof *meta);
-    memset(link, 0, sizeof *link);
-    meta->awake_index = TL_NONE;
-    link->next[0] = h->contacts.free;
-    h->contacts.free = contact;
+    tl_contact_clear(h, contact);
+    tl_bit_drop(tl_contact_alive(h), contact);
+    tl_bit_drop(tl_contact_awake(h), contact);
     h->contacts.used--;
+    h->contacts.high = tl_bit_end(tl_contact_alive(h), h->contacts.high);
+    tl_pair_leave_contact(h, pair, clear, &hint);
+}
+
+static int is_of_shape(const tl_contact_meta *m, uint32_t shape) { return m->shape_a == shape || m->shape_b == shape; }
+
+uint32_t tl_contacts_of(const tl_header *h, uint32_t body, uint32_t shape) {
+    uint32_t *out = tl_contact_order(h), count = 0;
+    const tl_pair_link *links = tl_pair_links(h);
+    for (uint32_t l = tl_body_links(h)[body].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
+        uint32_t c = tl_pairs(h)[l >> 1].contact;
+        if (c != TL_NONE && (shape == TL_NONE || is_of_shape(&tl_contacts(h)[c], shape))) {
+            out[count++] = c;
+        }
+    }
+    tl_sort_words(out, count);
+    return count;
 }
 
 void tl_contacts_refresh(tl_header *h, uint32_t body) {
-    const tl_contact_link *links = tl_contact_links(h);
-    for (uint32_t l = tl_bodies(h)[body].first_contact; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
-        tl_contacts(h)[l >> 1].flags |= TL_CONTACT_FRESH;
+    const tl_pair_link *links = tl_pair_links(h);
+    for (uint32_t l = tl_body_links(h)[body].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
+        tl_pair *p = &tl_pairs(h)[l >> 1];
+        p->clear = 0;
+        if (p->contact != TL_NONE) {
+            tl_contacts(h)[p->contact].flags |= TL_CONTACT_FRESH;
+        }
     }
+}
+
+void tl_lists_of_awake(tl_header *h) {
+    h->awake_contacts = tl_bit_list(tl_contact_awake(h), h->contacts.high, tl_awake_contact(h));
+    h->awake_joints = tl_bit_list(tl_joint_awake(h), h->joints.high, tl_awake_joint(h));
 }
 
 /* --- joints ----------------------------------------------------------------------------------- */
-
-static void joint_set_awake(tl_header *h, uint32_t joint) {
-    tl_joint_record *j = &tl_joints(h)[joint];
-    if (j->awake_index == TL_NONE) {
-        j->awake_index = h->awake_joints;
-        tl_awake_joint(h)[h->awake_joints++] = joint;
-    }
-}
-
-static void joint_clear_awake(tl_header *h, uint32_t joint) {
-    tl_joint_record *joints = tl_joints(h);
-    uint32_t *list = tl_awake_joint(h), at = joints[joint].awake_index;
-    if (at != TL_NONE) {
-        uint32_t last = list[--h->awake_joints];
-        list[at] = last;
-        joints[last].awake_index = at;
-        joints[joint].awake_index = TL_NONE;
-    }
-}
 
 void tl_joint_link(tl_header *h, uint32_t joint) {
     tl_joint_record *joints = tl_joints(h), *j = &joints[joint];
@@ -263,14 +173,14 @@ void tl_joint_link(tl_header *h, uint32_t joint) {
     }
     j->color = tl_color_take(h, j->body_a, j->body_b);
     if (tl_body_row(h)[j->body_a] || tl_body_row(h)[j->body_b]) {
-        joint_set_awake(h, joint);
+        tl_bit_add(tl_joint_awake(h), joint);
     }
 }
 
 void tl_joint_unlink(tl_header *h, uint32_t joint) {
     tl_joint_record *joints = tl_joints(h), *j = &joints[joint];
     uint32_t body[2] = {j->body_a, j->body_b};
-    joint_clear_awake(h, joint);
+    tl_bit_drop(tl_joint_awake(h), joint);
     tl_color_give(h, j->body_a, j->body_b, j->color);
     for (unsigned side = 0; side < 2u; side++) {
         uint32_t next = j->next[side], previous = j->previous[side];
@@ -298,13 +208,17 @@ void tl_body_set_awake(tl_header *h, uint32_t body) {
     meta->flags |= TL_BODY_AWAKE;
     tl_body_quiets(h)[body].time = 0.0f;
     tl_body_quiets(h)[body].speed = 0.0f;
-    const tl_contact_link *links = tl_contact_links(h);
-    for (uint32_t l = meta->first_contact; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
-        contact_set_awake(h, l >> 1);
+    const tl_pair_link *links = tl_pair_links(h);
+    for (uint32_t l = tl_body_links(h)[body].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
+        uint32_t contact = tl_pairs(h)[l >> 1].contact;
+        tl_pair_set_awake(h, l >> 1);
+        if (contact != TL_NONE) {
+            tl_bit_add(tl_contact_awake(h), contact);
+        }
     }
     const tl_joint_record *joints = tl_joints(h);
     for (uint32_t l = meta->first_joint; l != TL_NONE; l = joints[l >> 1].next[l & 1u]) {
-        joint_set_awake(h, l >> 1);
+        tl_bit_add(tl_joint_awake(h), l >> 1);
     }
 }
 
@@ -317,6 +231,7 @@ void tl_body_clear_awake(tl_header *h, uint32_t body) {
     list[row - 1u] = last;
     rows[last] = row;
     rows[body] = 0;
+    tl_body_way(h)[body] = 0;
     tl_bodies(h)[body].flags &= ~(uint32_t)TL_BODY_AWAKE;
 }
 
@@ -324,55 +239,44 @@ void tl_island_wake(tl_header *h, uint32_t body) {
     if (tl_body_row(h)[body] || !tl_body_is_dynamic(h, body)) {
         return;
     }
-    tl_body_meta *bodies = tl_bodies(h);
+    tl_body_link *links = tl_body_links(h);
     uint32_t i = body;
     do {
-        uint32_t next = bodies[i].sleep_next;
-        bodies[i].sleep_next = TL_NONE;
+        uint32_t next = links[i].sleep_next;
+        links[i].sleep_next = tl_bodies(h)[i].island = TL_NONE;
         tl_body_set_awake(h, i);
         i = next;
     } while (i != TL_NONE && i != body);
     h->counters.islands_woken++;
 }
 
+void tl_body_fall_asleep(tl_header *h, uint32_t body, uint32_t island) {
+    tl_body_link *links = tl_body_links(h);
+    tl_bodies(h)[body].island = island;
+    if (links[island].sleep_next == TL_NONE) {
+        links[island].sleep_next = island;
+    }
+    if (body != island) {
+        links[body].sleep_next = links[island].sleep_next;
+        links[island].sleep_next = body;
+    }
+}
+
 void tl_lists_drop_sleeping(tl_header *h) {
     const uint32_t *rows = tl_body_row(h);
-    const tl_contact_meta *contacts = tl_contacts(h);
-    for (uint32_t k = h->awake_contacts; k-- > 0;) {
-        uint32_t c = tl_awake_contact(h)[k];
-        if (!rows[contacts[c].body_a] && !rows[contacts[c].body_b]) {
-            contact_clear_awake(h, c);
+    for (uint32_t k = 0; k < h->awake_contacts; k++) {
+        const tl_contact_meta *m = &tl_contacts(h)[tl_awake_contact(h)[k]];
+        if (!rows[m->body_a] && !rows[m->body_b]) {
+            tl_bit_drop(tl_contact_awake(h), tl_awake_contact(h)[k]);
         }
     }
-    for (uint32_t k = h->awake_joints; k-- > 0;) {
-        uint32_t j = tl_awake_joint(h)[k];
-        if (!rows[tl_joints(h)[j].body_a] && !rows[tl_joints(h)[j].body_b]) {
-            joint_clear_awake(h, j);
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        const tl_joint_record *j = &tl_joints(h)[tl_awake_joint(h)[k]];
+        if (!rows[j->body_a] && !rows[j->body_b]) {
+            tl_bit_drop(tl_joint_awake(h), tl_awake_joint(h)[k]);
         }
     }
-}
-
-/* --- shapes that moved ----------------------------------------------------------------------- */
-
-void tl_shape_mark_moved(tl_header *h, uint32_t shape) {
-    tl_shape_meta *meta = &tl_shapes(h)[shape];
-    if (!(meta->flags & TL_SHAPE_MOVED)) {
-        meta->flags |= TL_SHAPE_MOVED;
-        tl_moved_shape(h)[h->moved_shapes++] = shape;
-    }
-}
-
-void tl_shape_unmark_moved(tl_header *h, uint32_t shape) {
-    if (tl_shapes(h)[shape].flags & TL_SHAPE_MOVED) {
-        uint32_t *list = tl_moved_shape(h), k = 0;
-        while (list[k] != shape) {
-            k++;
-        }
-        for (h->moved_shapes--; k < h->moved_shapes; k++) {
-            list[k] = list[k + 1u];
-        }
-        tl_shapes(h)[shape].flags &= ~(uint32_t)TL_SHAPE_MOVED;
-    }
+    tl_pairs_drop_sleeping(h);
 }
 
 void tl_joint_remove(tl_header *h, uint32_t i) {
@@ -384,7 +288,6 @@ void tl_joint_remove(tl_header *h, uint32_t i) {
     uint32_t body[2] = {j->body_a, j->body_b}, generation = j->generation, moved = j->flags & TL_JOINT_COLLIDE;
     memset(j, 0, sizeof *j);
     j->generation = generation;
-    j->awake_index = TL_NONE;
     j->free_next = h->joints.free;
     h->joints.free = i;
     h->joints.used--;

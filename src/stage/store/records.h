@@ -26,11 +26,16 @@ enum {
 
 typedef struct tl_body_meta {
     uint32_t flags, generation;
-    uint32_t first_shape, first_contact, first_joint; /* contact and joint links: twice the index, plus the side */
-    uint32_t sleep_next;                              /* ring of an island that sleeps */
+    uint32_t first_shape, first_joint; /* joint links: twice the index, plus the side */
+    uint32_t island;                   /* asleep: the lowest body of those that it fell asleep with, else TL_NONE */
     uint32_t free_next;
     uint32_t moves; /* kinematic: its velocity is not zero */
 } tl_body_meta;
+
+typedef struct tl_body_link {
+    uint32_t first_pair; /* pair links: twice the index, plus the side */
+    uint32_t sleep_next; /* ring of an island that sleeps */
+} tl_body_link;
 
 typedef struct tl_body_inertia {
     float inverse_mass;
@@ -45,15 +50,23 @@ typedef struct tl_body_quiet {
 } tl_body_quiet;
 
 /* shape_meta.flags */
-enum { TL_SHAPE_ALIVE = 1, TL_SHAPE_SENSOR = 2, TL_SHAPE_EVENTS = 4, TL_SHAPE_MOVED = 8 };
+enum { TL_SHAPE_ALIVE = 1, TL_SHAPE_SENSOR = 2, TL_SHAPE_EVENTS = 4 };
 
 typedef struct tl_shape_meta {
     uint32_t flags, generation, body, next; /* next in the body, or in the free list */
-    uint32_t node;                          /* in the tree */
     int32_t group;
     float density;
-    uint32_t motion; /* the body's count when the fat box was made */
 } tl_shape_meta;
+
+/* Where the broad phase has a shape. */
+typedef struct tl_shape_track {
+    talus_aabb fat;  /* as in the tree */
+    uint32_t node;   /* the leaf plus one, 0 if it is in no tree */
+    uint32_t still;  /* it is in the tree of what does not move */
+    uint32_t moved;  /* its place in moved_shape plus one, 0 if it is not there */
+    uint32_t motion; /* the body's count when the fat box was made */
+    uint32_t stale;  /* the count says nothing: look at the box */
+} tl_shape_track;
 
 typedef struct tl_material {
     float static_friction, dynamic_friction, restitution, rolling_resistance;
@@ -87,32 +100,40 @@ typedef struct tl_contact_points {
 /* contact_meta.flags */
 enum {
     TL_CONTACT_ALIVE = 1,
-    TL_CONTACT_TOUCHING = 2, /* has rows: began to touch */
     TL_CONTACT_SENSOR = 4,
     TL_CONTACT_EVENTS = 8,
     TL_CONTACT_COLORED = 16,
     TL_CONTACT_CLOSE = 32, /* surfaces overlap or meet: what begin and end events tell */
-    TL_CONTACT_FRESH = 64  /* never went through the narrow stage */
+    TL_CONTACT_FRESH = 64  /* to be looked at whether its bodies moved or not */
 };
 
+/* Two shapes that touch, or may within the step. */
 typedef struct tl_contact_meta {
     uint32_t flags, count; /* points */
+    uint32_t shape_a, shape_b;
     uint32_t body_a, body_b;
     uint32_t motion; /* sum of both bodies' motion counts (micrometres) when the manifold was made */
-    uint32_t slack;  /* micrometres that the pair may move before it has to be looked at again */
     uint32_t color;
-    uint32_t awake_index; /* in awake_contact, or TL_NONE */
 } tl_contact_meta;
+
+/* Two shapes whose fat boxes overlap. */
+typedef struct tl_pair {
+    uint32_t shape_a, shape_b; /* a < b; both 0 for a pair that is not in use */
+    uint32_t body_a, body_b;
+    uint32_t contact;     /* or TL_NONE while they are apart */
+    uint32_t awake_index; /* in awake_pair, or TL_NONE */
+    uint32_t motion;      /* sum of both bodies' motion counts (micrometres) when they were last looked at */
+    uint32_t clear;       /* micrometres that they were apart beyond the speculative margin then */
+} tl_pair;
+
+/* The lists of a body's pairs: links hold twice the pair's index plus the side (0: a, 1: b). */
+typedef struct tl_pair_link {
+    uint32_t next[2], previous[2];
+} tl_pair_link;
 
 typedef struct tl_contact_material {
     float static_friction, dynamic_friction, restitution, rolling;
 } tl_contact_material;
-
-/* The lists of a body's contacts: links hold twice the contact's index plus the side (0: a, 1: b). */
-typedef struct tl_contact_link {
-    uint32_t shape_a, shape_b;
-    uint32_t next[2], previous[2];
-} tl_contact_link;
 
 /* What a row of a joint holds; the code of a row is type + TL_ROW_TYPES * mode. */
 enum {
@@ -143,8 +164,8 @@ typedef struct tl_joint_drive_record {
 
 typedef struct tl_joint_record {
     uint32_t flags, generation, body_a, body_b;
-    uint32_t next[2], previous[2]; /* as in tl_contact_link */
-    uint32_t color, awake_index, free_next;
+    uint32_t next[2], previous[2]; /* links: twice the joint's index plus the side */
+    uint32_t color, free_next;
     uint32_t rows, fixed, code[TL_JOINT_ROWS];
     uint32_t free_axis;          /* the one angular axis beside two locked ones, or TL_NONE */
     talus_pose place_a, place_b; /* the frames in the mass frames */

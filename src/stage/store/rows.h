@@ -27,8 +27,7 @@ typedef struct tl_row8 {
  *   row_momentum             angular momentum x y z (kg m^2/s), u that goes with it, 1 if it is slender, 0
  *   row_frame                rotation of K's frame x y z w, s x y z, 1 if the gyroscopic term counts
  *   row_force                acceleration x y z, whitened angular acceleration x y z, damping factors of v and of u
- *   shape_place              the shape in the mass frame: x y z, rotation x y z w, largest reach from the centre (m)
- *   shape_fat                lower x y z, upper x y z (m), 0, 0 */
+ *   shape_place              the shape in the mass frame: x y z, rotation x y z w, largest reach from the centre (m) */
 
 typedef struct tl_contact_lane_point {
     float ja[3][TL_LANES], jb[3][TL_LANES]; /* whitened angular Jacobians */

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/bits.h"
 #include "stage/store/hash.h"
 
 typedef enum life { LIFE_STATE, LIFE_INDEX, LIFE_STEP } life;
@@ -35,8 +36,11 @@ uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_
     capacity[TL_COUNT_BODY] = def->body_capacity + 1u; /* the ground is body 0 */
     capacity[TL_COUNT_SHAPE] = def->shape_capacity;
     capacity[TL_COUNT_NODE] = 2u * def->shape_capacity;
+    capacity[TL_COUNT_PAIR] = (1u + TL_APART_PER_CONTACT) * def->contact_capacity;
+    capacity[TL_COUNT_SLOT] = power_of_two_from(2u * capacity[TL_COUNT_PAIR]);
     capacity[TL_COUNT_CONTACT] = def->contact_capacity;
-    capacity[TL_COUNT_SLOT] = power_of_two_from(2u * def->contact_capacity);
+    capacity[TL_COUNT_CONTACTBIT] = tl_bit_words(def->contact_capacity);
+    capacity[TL_COUNT_JOINTBIT] = tl_bit_words(def->joint_capacity);
     capacity[TL_COUNT_JOINT] = def->joint_capacity;
     capacity[TL_COUNT_ROW] = (def->body_capacity + 1u + TL_LANES) / TL_LANES * TL_LANES + TL_LANES;
     capacity[TL_COUNT_GROUP] = group_capacity(def->contact_capacity);
@@ -70,25 +74,11 @@ int tl_world_is_sound(const talus_world *world) {
 }
 
 uint32_t tl_store_live(const tl_header *h, tl_column_id column) {
-    switch (column) {
-    case TL_COLUMN_awake_body:
-        return h->awake_bodies;
-    case TL_COLUMN_awake_contact:
-        return h->awake_contacts;
-    case TL_COLUMN_awake_joint:
-        return h->awake_joints;
-    case TL_COLUMN_moved_shape:
-        return h->moved_shapes;
-    default:
-        break;
-    }
     switch (COLUMNS[column].count) {
     case TL_COUNT_BODY:
         return h->bodies.high;
     case TL_COUNT_SHAPE:
         return h->shapes.high;
-    case TL_COUNT_NODE:
-        return h->nodes.high;
     case TL_COUNT_CONTACT:
         return h->contacts.high;
     case TL_COUNT_JOINT:
@@ -108,6 +98,7 @@ int tl_store_state(const tl_header *h, tl_column_id column, tl_live *out) {
     }
     out->rows = tl_store_live(h, column);
     out->row_bytes = COLUMNS[column].row_bytes;
+    out->word = COLUMNS[column].word;
     out->data = (unsigned char *)(uintptr_t)column_bytes(h, column);
     return 1;
 }

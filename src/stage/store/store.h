@@ -17,14 +17,20 @@ typedef enum tl_column_id {
         TL_COLUMN_COUNT
 } tl_column_id;
 
+/* Room for pairs that are apart, a contact. */
+#define TL_APART_PER_CONTACT 3u
+
 /* The capacities that the table's `count` names. */
 typedef enum tl_count {
     TL_COUNT_BODY,
     TL_COUNT_SHAPE,
     TL_COUNT_NODE,
-    TL_COUNT_CONTACT,
+    TL_COUNT_PAIR,
     TL_COUNT_SLOT,
+    TL_COUNT_CONTACT,
+    TL_COUNT_CONTACTBIT,
     TL_COUNT_JOINT,
+    TL_COUNT_JOINTBIT,
     TL_COUNT_ROW,
     TL_COUNT_GROUP,
     TL_COUNT_JOINTGROUP,
@@ -61,12 +67,14 @@ typedef struct tl_header {
     uint32_t offset[TL_COLUMN_COUNT]; /* in TL_UNIT bytes */
     uint32_t state;                   /* marks where the state begins */
     tl_settings settings;
-    tl_pool bodies, shapes, nodes, contacts, joints;
-    uint32_t awake_bodies, awake_contacts, awake_joints, moved_shapes;
-    uint32_t root[2]; /* of the trees: moving, still */
+    tl_pool bodies, shapes, contacts, joints;
     uint32_t steps_low, steps_high;
     uint32_t event_shapes, breaking_joints; /* in use: without any there is nothing to look for */
     uint32_t end;                           /* marks where the state ends */
+    tl_pool nodes, pairs;
+    uint32_t root[2]; /* of the trees: moving, still */
+    uint32_t moved_shapes, awake_bodies, awake_pairs, awake_contacts, awake_joints;
+    uint32_t pairs_missing; /* there was no room for all: shapes left in moved_shape are looked at without */
     talus_counters counters;
     tl_event_counts events;
     uint32_t groups, joint_groups, joint_rows; /* of the last step */
@@ -98,7 +106,7 @@ uint32_t tl_store_live(const tl_header *h, tl_column_id column);
 /* The live rows of a state column; 0 if the column is not part of the state. */
 typedef struct tl_live {
     unsigned char *data;
-    uint32_t rows, row_bytes;
+    uint32_t rows, row_bytes, word;
 } tl_live;
 int tl_store_state(const tl_header *h, tl_column_id column, tl_live *out);
 

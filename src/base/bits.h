@@ -1,0 +1,52 @@
+/* Sets of small numbers, 64 to a word. */
+#ifndef TL_BITS_H
+#define TL_BITS_H
+
+#include <stdint.h>
+
+static inline uint32_t tl_bit_words(uint32_t bits) { return (bits + 63u) / 64u; }
+static inline int tl_bit_has(const uint64_t *set, uint32_t i) { return (int)(set[i / 64u] >> (i % 64u) & 1u); }
+static inline void tl_bit_add(uint64_t *set, uint32_t i) { set[i / 64u] |= (uint64_t)1 << (i % 64u); }
+static inline void tl_bit_drop(uint64_t *set, uint32_t i) { set[i / 64u] &= ~((uint64_t)1 << (i % 64u)); }
+
+/* The number of the lowest bit of a word that is not 0: a de Bruijn sequence (Leiserson, Prokop and Randall, "Using de
+ * Bruijn sequences to index a 1 in a computer word", 1998). */
+static inline uint32_t tl_bit_lowest(uint64_t word) {
+    static const uint8_t number[64] = {0,  1,  2,  53, 3,  7,  54, 27, 4,  38, 41, 8,  34, 55, 48, 28,
+                                       62, 5,  39, 46, 44, 42, 22, 9,  24, 35, 59, 56, 49, 18, 29, 11,
+                                       63, 52, 6,  26, 37, 40, 33, 47, 61, 45, 43, 21, 23, 58, 17, 10,
+                                       51, 25, 36, 32, 60, 20, 57, 16, 50, 31, 19, 15, 30, 14, 13, 12};
+    return number[((word & (0u - word)) * 0x022fdd63cc95386du) >> 58];
+}
+
+/* The members below `bits`, ascending, into `out`; returns how many there are. */
+static inline uint32_t tl_bit_list(const uint64_t *set, uint32_t bits, uint32_t *out) {
+    uint32_t count = 0;
+    for (uint32_t w = 0; w < tl_bit_words(bits); w++) {
+        for (uint64_t word = set[w]; word; word &= word - 1u) {
+            out[count++] = w * 64u + tl_bit_lowest(word);
+        }
+    }
+    return count;
+}
+
+/* The lowest number below `bits` that is not a member, or ~0. */
+static inline uint32_t tl_bit_first_free(const uint64_t *set, uint32_t bits) {
+    for (uint32_t w = 0; w < tl_bit_words(bits); w++) {
+        if (~set[w]) {
+            uint32_t i = w * 64u + tl_bit_lowest(~set[w]);
+            return i < bits ? i : ~(uint32_t)0;
+        }
+    }
+    return ~(uint32_t)0;
+}
+
+/* One more than the highest member below `end`; 0 if there is none. */
+static inline uint32_t tl_bit_end(const uint64_t *set, uint32_t end) {
+    while (end > 0 && !tl_bit_has(set, end - 1u)) {
+        end = set[(end - 1u) / 64u] == 0 ? (end - 1u) / 64u * 64u : end - 1u;
+    }
+    return end;
+}
+
+#endif
