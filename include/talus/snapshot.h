@@ -20,8 +20,8 @@ talus_status talus_world_save(const talus_world *world, void *out, size_t bytes,
 /* Puts a world of the same capacities back to a snapshot. Handles from before the snapshot hold again; those of objects
  * made since are stale. The instruction set stays as it is, and so does what the broad phase knows of shapes that are
  * where they were; interpolation begins at the restored poses. A snapshot that is damaged, cut off or of other
- * capacities is refused with TALUS_BAD_BLOB and nothing changed; one that was made to deceive the checksum may leave the
- * world empty. O(live rows). */
+ * capacities is refused with TALUS_BAD_BLOB and nothing changed; one that was made to deceive the checksum may leave
+ * the world empty. O(live rows). */
 talus_status talus_world_restore(talus_world *world, const void *snapshot, size_t bytes);
 
 #ifdef __cplusplus

@@ -1,7 +1,5 @@
 #include "world/pack.h"
 
-#include <string.h>
-
 #define BLOCK 32u /* bytes */
 #define RUN 256u
 
@@ -12,57 +10,59 @@ static int is_big_endian(void) {
     return first == 0;
 }
 
-unsigned char *tl_put_words(unsigned char *p, const void *words, size_t count) {
-    if (!is_big_endian()) {
-        memcpy(p, words, count * 4u);
-        return p + count * 4u;
-    }
-    for (size_t i = 0; i < count; i++) {
-        uint32_t w;
-        memcpy(&w, (const unsigned char *)words + 4u * i, 4);
-        p = tl_put_word(p, w);
-    }
-    return p;
-}
-
-void tl_get_words(const unsigned char *p, void *words, size_t count) {
-    if (!is_big_endian()) {
-        memcpy(words, p, count * 4u);
-        return;
-    }
-    for (size_t i = 0; i < count; i++) {
-        uint32_t w = tl_get_word(p + 4u * i);
-        memcpy((unsigned char *)words + 4u * i, &w, 4);
-    }
-}
-
 /* The word of a block that comes k-th: of members of eight bytes the low half comes first. */
 static size_t place_of(size_t k, size_t word) { return word == 8u && is_big_endian() ? k ^ 1u : k; }
+
+static size_t least(size_t a, size_t b) { return a < b ? a : b; }
+
+/* Bytes from the first on that have no row before them, in whole blocks. */
+static size_t first_of(size_t stride) { return (stride + BLOCK - 1u) / BLOCK * BLOCK; }
+
+/* Which words of two whole blocks differ. */
+static uint32_t difference(const unsigned char *now, const unsigned char *before) {
+    uint32_t mask = 0;
+    for (unsigned k = 0; k < 4u; k++) {
+        uint64_t a, b;
+        memcpy(&a, now + 8u * k, 8);
+        memcpy(&b, before + 8u * k, 8);
+        uint64_t x = a ^ b;
+        mask |= ((uint32_t)((uint32_t)x != 0) | (uint32_t)(x >> 32 != 0) << 1) << 2u * k;
+    }
+    return mask;
+}
 
 /* Writes the words in which two blocks differ; returns where it ended, p if they are alike. */
 static unsigned char *pack_block(unsigned char *p, const unsigned char *now, const unsigned char *before, size_t bytes,
                                  size_t word) {
-    uint32_t a[8] = {0}, b[8] = {0}, mask = 0;
-    memcpy(a, now, bytes);
-    memcpy(b, before, bytes);
+    if (bytes == BLOCK && !is_big_endian()) { /* the same as below, the usual cases by whole copies */
+        uint32_t mask = difference(now, before);
+        if (mask == 0) {
+            return p;
+        }
+        *p = (unsigned char)mask;
+        if (mask == 0x7fu || mask == 0xffu || mask == 0x3fu) {
+            memcpy(p + 1, now, BLOCK);
+            return p + 1 + (mask == 0xffu ? 32 : mask == 0x7fu ? 28 : 24);
+        }
+    }
+    uint32_t mask = 0;
     unsigned char *q = p + 1;
-    for (size_t k = 0; k < 8u; k++) {
-        size_t at = place_of(k, word);
-        tl_put_word(q, a[at]);
-        q += a[at] != b[at] ? 4 : 0;
-        mask |= (uint32_t)(a[at] != b[at]) << k;
+    for (size_t k = 0; k < bytes / 4u; k++) {
+        uint32_t a, b;
+        memcpy(&a, now + 4u * place_of(k, word), 4);
+        memcpy(&b, before + 4u * place_of(k, word), 4);
+        tl_put_word(q, a);
+        q += a != b ? 4 : 0;
+        mask |= (uint32_t)(a != b) << k;
     }
     *p = (unsigned char)mask;
     return mask ? q : p;
 }
 
-static size_t least(size_t a, size_t b) { return a < b ? a : b; }
-
 unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, size_t stride, size_t word) {
-    static const unsigned char zero[RUN];
+    static const unsigned char zero[BLOCK];
     const unsigned char *data = rows;
-    size_t bytes = count * stride,
-           first = (stride + BLOCK - 1u) / BLOCK * BLOCK; /* blocks up to it have no row before */
+    size_t bytes = count * stride, first = first_of(stride);
     for (size_t at = 0; at < bytes;) {
         size_t run = least(RUN, bytes - at);
         unsigned char *blocks = p++;
@@ -72,9 +72,8 @@ unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, si
             continue;
         }
         for (unsigned k = 0; k < RUN / BLOCK && at < bytes; k++, at += least(BLOCK, bytes - at)) {
-            size_t size = least(BLOCK, bytes - at);
             const unsigned char *before = at >= first ? data + at - stride : zero;
-            unsigned char *q = pack_block(p, data + at, before, size, word);
+            unsigned char *q = pack_block(p, data + at, before, least(BLOCK, bytes - at), word);
             *blocks = (unsigned char)(*blocks | (q != p) << k);
             p = q;
         }
@@ -95,10 +94,14 @@ static void put_mark(const tl_marks *marks, size_t row) {
 /* Puts a block in its place and marks its rows if that changes them. */
 static void place_block(unsigned char *to, size_t at, const uint32_t *block, size_t size, size_t stride,
                         const tl_marks *marks) {
-    if (memcmp(to + at, block, size) == 0) {
-        return;
+    if (size == BLOCK) {
+        if (difference(to + at, (const unsigned char *)block) == 0) {
+            return;
+        }
+        memcpy(to + at, block, BLOCK);
+    } else {
+        memcpy(to + at, block, size);
     }
-    memcpy(to + at, block, size);
     if (marks) {
         for (size_t row = at / stride; row <= (at + size - 1u) / stride; row++) {
             put_mark(marks, row);
@@ -109,12 +112,17 @@ static void place_block(unsigned char *to, size_t at, const uint32_t *block, siz
 const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char *end, void *rows, size_t count,
                                     size_t stride, size_t word, const tl_marks *marks) {
     unsigned char *data = rows;
-    size_t bytes = count * stride, first = (stride + BLOCK - 1u) / BLOCK * BLOCK;
+    size_t bytes = count * stride, first = first_of(stride);
     for (size_t at = 0; at < bytes;) {
         if (p >= end) {
             return NULL;
         }
         uint32_t blocks = *p++;
+        size_t run = least(RUN, bytes - at);
+        if (blocks == 0 && at >= first && memcmp(data + at, data + at - stride, run) == 0) {
+            at += run; /* as it should be */
+            continue;
+        }
         for (unsigned k = 0; k < RUN / BLOCK && at < bytes; k++, at += least(BLOCK, bytes - at)) {
             size_t size = least(BLOCK, bytes - at);
             uint32_t block[8] = {0};
@@ -125,7 +133,7 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
                 }
                 mask = *p++;
             }
-            if (at >= first && stride >= BLOCK) {
+            if (at >= first && stride >= BLOCK && mask != 0xffu) {
                 memcpy(block, data + at - stride, size);
             }
             for (size_t j = 0; (mask || stride < BLOCK) && j < size / 4u; j++) {
@@ -151,25 +159,31 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
     return p;
 }
 
-/* FNV-1a (Fowler, Noll, Vo) over words of eight bytes in four interleaved streams, so that the multiplications
- * overlap. */
+/* Sums of words of eight bytes and sums of those sums in four interleaved streams: Fletcher, "An arithmetic checksum
+ * for serial transmissions", IEEE Trans. Communications 30(1), 1982. */
 uint64_t tl_pack_checksum(const unsigned char *p, size_t bytes) {
-    uint64_t stream[4] = {0xcbf29ce484222325u, 0x9ce484222325cbf2u, 0x84222325cbf29ce4u, 0x2325cbf29ce48422u};
+    uint64_t sum[4] = {1, 2, 3, 4}, twice[4] = {0, 0, 0, 0};
     size_t at = 0;
     for (; bytes - at >= 32u; at += 32u) {
         for (unsigned k = 0; k < 4u; k++) {
-            const unsigned char *q = p + at + 8u * k;
-            uint64_t w = (uint64_t)tl_get_word(q + 4) << 32 | tl_get_word(q);
-            stream[k] = (stream[k] ^ w) * 0x00000100000001b3u;
+            uint64_t w;
+            memcpy(&w, p + at + 8u * k, 8);
+            if (is_big_endian()) {
+                w = (uint64_t)tl_get_word(p + at + 8u * k + 4u) << 32 | tl_get_word(p + at + 8u * k);
+            }
+            sum[k] += w;
+            twice[k] += sum[k];
         }
     }
     for (; at < bytes; at++) {
-        stream[0] = (stream[0] ^ p[at]) * 0x00000100000001b3u;
+        sum[0] += p[at];
+        twice[0] += sum[0];
     }
-    uint64_t sum = bytes;
+    uint64_t mix = bytes;
     for (unsigned k = 0; k < 4u; k++) {
-        sum = (sum ^ stream[k]) * 0x9e3779b97f4a7c15u;
-        sum ^= sum >> 29;
+        mix = (mix ^ sum[k]) * 0x9e3779b97f4a7c15u;
+        mix = (mix ^ mix >> 29 ^ twice[k]) * 0xbf58476d1ce4e5b9u;
+        mix ^= mix >> 32;
     }
-    return sum;
+    return mix;
 }

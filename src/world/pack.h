@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 static inline unsigned char *tl_put_word(unsigned char *p, uint32_t w) {
     p[0] = (unsigned char)w, p[1] = (unsigned char)(w >> 8), p[2] = (unsigned char)(w >> 16);
@@ -14,8 +15,20 @@ static inline unsigned char *tl_put_word(unsigned char *p, uint32_t w) {
 static inline uint32_t tl_get_word(const unsigned char *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
-unsigned char *tl_put_words(unsigned char *p, const void *words, size_t count);
-void tl_get_words(const unsigned char *p, void *words, size_t count);
+static inline unsigned char *tl_put_words(unsigned char *p, const void *words, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        uint32_t w;
+        memcpy(&w, (const unsigned char *)words + 4u * i, 4);
+        p = tl_put_word(p, w);
+    }
+    return p;
+}
+static inline void tl_get_words(const unsigned char *p, void *words, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        uint32_t w = tl_get_word(p + 4u * i);
+        memcpy((unsigned char *)words + 4u * i, &w, 4);
+    }
+}
 
 /* Rows of `stride` bytes, a multiple of `word` (4 or 8, the size of the members). In runs of 256 bytes: a byte that
  * says which blocks of 32 bytes differ from what lies a row before, for each of those a byte that says which words do,

@@ -8,6 +8,11 @@
 void tl_reindex_begin(tl_header *h, uint32_t bodies) {
     uint32_t rows = bodies > h->bodies.high ? bodies : h->bodies.high;
     memset(tl_island_parent(h), 0, rows * sizeof(uint32_t));
+    for (uint32_t c = 0; c < h->contacts.high; c++) {
+        if (tl_bit_has(tl_contact_alive(h), c)) {
+            tl_pairs(h)[tl_contact_pair(h)[c]].contact = TL_NONE;
+        }
+    }
     for (uint32_t i = 0; i < h->joints.high; i++) {
         const tl_joint_record *j = &tl_joints(h)[i];
         tl_joint_group *was = &tl_joint_group_pool(h)[i];
@@ -81,13 +86,23 @@ static int joints_are_sound(const tl_header *h) {
     return 1;
 }
 
-static int contact_is_sound(const tl_header *h, uint32_t c) {
-    const tl_contact_meta *m = &tl_contacts(h)[c];
-    return (m->flags & TL_CONTACT_ALIVE) && m->shape_a < m->shape_b && is_shape(h, m->shape_a) &&
-           is_shape(h, m->shape_b) && m->count <= TL_MANIFOLD_POINTS && m->color <= TL_COLORS;
+static int are_shapes(const tl_header *h, const tl_contact_meta *m) {
+    return m->shape_a < m->shape_b && is_shape(h, m->shape_a) && is_shape(h, m->shape_b);
 }
 
 /* --- shapes and pairs -------------------------------------------------------------------------- */
+
+/* Whether anything became another. */
+static int any_other(const tl_header *h, uint32_t bodies, uint32_t shapes) {
+    uint32_t any = 0;
+    for (uint32_t i = 0; i < bodies; i++) {
+        any |= tl_island_parent(h)[i];
+    }
+    for (uint32_t s = 0; s < shapes; s++) {
+        any |= tl_shape_tracks(h)[s].stale;
+    }
+    return any != 0;
+}
 
 static void renew_pairs(tl_header *h) {
     const uint32_t *other = tl_island_parent(h);
@@ -97,7 +112,6 @@ static void renew_pairs(tl_header *h) {
         if (p->shape_b == 0) {
             continue;
         }
-        p->contact = p->awake_index = TL_NONE;
         if (tracks[p->shape_a].stale == TL_SHAPE_OTHER || tracks[p->shape_b].stale == TL_SHAPE_OTHER) {
             tl_pair_end(h, i);
         } else if (other[p->body_a] | other[p->body_b]) {
@@ -110,7 +124,6 @@ static void renew_pairs(tl_header *h) {
 static void drop_pairs(tl_header *h) {
     for (uint32_t i = 0; i < h->pairs.high; i++) {
         if (tl_pairs(h)[i].shape_b != 0) {
-            tl_pairs(h)[i].awake_index = TL_NONE;
             tl_pair_end(h, i);
         }
     }
@@ -143,25 +156,51 @@ static void renew_shapes(tl_header *h, uint32_t rows) {
 
 /* --- bodies, contacts and joints ---------------------------------------------------------------- */
 
-static void renew_bodies(tl_header *h, uint32_t before) {
-    tl_body_link *links = tl_body_links(h);
+/* Whether the bodies that are awake are those that were. */
+static int are_as_awake(const tl_header *h, uint32_t before) {
+    const uint32_t *rows = tl_body_row(h);
+    uint32_t differ = 0;
+    for (uint32_t i = 0; i < h->bodies.high || i < before; i++) {
+        uint32_t awake = (tl_bodies(h)[i].flags & (TL_BODY_ALIVE | TL_BODY_AWAKE)) == (TL_BODY_ALIVE | TL_BODY_AWAKE);
+        differ |= awake ^ (rows[i] != 0);
+    }
+    return !differ;
+}
+
+static void renew_awake(tl_header *h) {
     memset(tl_body_row(h), 0, h->capacity[TL_COUNT_BODY] * sizeof(uint32_t));
     memset(tl_body_way(h), 0, h->capacity[TL_COUNT_BODY] * sizeof(uint32_t));
-    h->awake_bodies = 0;
+    h->awake_bodies = h->awake_pairs = 0;
+    for (uint32_t i = 0; i < h->bodies.high; i++) {
+        if ((tl_bodies(h)[i].flags & (TL_BODY_ALIVE | TL_BODY_AWAKE)) == (TL_BODY_ALIVE | TL_BODY_AWAKE)) {
+            tl_awake_body(h)[h->awake_bodies] = i;
+            tl_body_row(h)[i] = ++h->awake_bodies;
+        }
+    }
+    for (uint32_t i = 0; i < h->pairs.high; i++) {
+        tl_pair *p = &tl_pairs(h)[i];
+        p->awake_index = TL_NONE;
+        if (p->shape_b != 0 && (tl_body_row(h)[p->body_a] || tl_body_row(h)[p->body_b])) {
+            tl_pair_set_awake(h, i);
+        }
+    }
+}
+
+static void renew_bodies(tl_header *h, uint32_t before) {
+    tl_body_link *links = tl_body_links(h);
     for (uint32_t i = 0; i < h->bodies.high; i++) {
         links[i].sleep_next = TL_NONE;
         if (i >= before) {
             links[i].first_pair = TL_NONE;
         }
         tl_body_colors(h)[i] = 0;
-        tl_body_previous(h)[i] = tl_body_pose(h)[i];
+        if (tl_bodies(h)[i].flags & TL_BODY_AWAKE) {
+            tl_body_previous(h)[i] = tl_body_pose(h)[i];
+        }
     }
     for (uint32_t i = 0; i < h->bodies.high; i++) {
         const tl_body_meta *m = &tl_bodies(h)[i];
-        if ((m->flags & (TL_BODY_ALIVE | TL_BODY_AWAKE)) == (TL_BODY_ALIVE | TL_BODY_AWAKE)) {
-            tl_awake_body(h)[h->awake_bodies] = i;
-            tl_body_row(h)[i] = ++h->awake_bodies;
-        } else if ((m->flags & TL_BODY_ALIVE) && m->island != TL_NONE) {
+        if ((m->flags & (TL_BODY_ALIVE | TL_BODY_AWAKE)) == TL_BODY_ALIVE && m->island != TL_NONE) {
             tl_body_fall_asleep(h, i, m->island);
         }
     }
@@ -180,12 +219,21 @@ static talus_status renew_contacts(tl_header *h) {
         if (!tl_bit_has(tl_contact_alive(h), c)) {
             continue;
         }
-        if (!contact_is_sound(h, c)) {
+        uint32_t hint = tl_contact_pair(h)[c];
+        const tl_pair *p = &tl_pairs(h)[hint];
+        if (!(m->flags & TL_CONTACT_ALIVE) || m->color > TL_COLORS) {
             return TALUS_BAD_BLOB;
         }
-        m->body_a = tl_shapes(h)[m->shape_a].body, m->body_b = tl_shapes(h)[m->shape_b].body;
-        tl_contact_mix(h, c);
-        tl_contact_enter(h, c);
+        if (m->body_a != TL_NONE && p->shape_a == m->shape_a && p->shape_b == m->shape_b) { /* none became another */
+            tl_contact_tie(h, c, hint);
+        } else {
+            if (!are_shapes(h, m)) {
+                return TALUS_BAD_BLOB;
+            }
+            m->body_a = tl_shapes(h)[m->shape_a].body, m->body_b = tl_shapes(h)[m->shape_b].body;
+            tl_contact_mix(h, c);
+            tl_contact_enter(h, c);
+        }
         if (m->flags & TL_CONTACT_COLORED) {
             take_color(h, m->body_a, m->body_b, m->color);
         }
@@ -237,17 +285,17 @@ talus_status tl_reindex_end(tl_header *h, const tl_header *before) {
         return TALUS_BAD_BLOB;
     }
     renew_bodies(h, before->bodies.high);
-    h->awake_pairs = 0;
-    renew_pairs(h);
-    renew_shapes(h, before->shapes.high > h->shapes.high ? before->shapes.high : h->shapes.high);
+    uint32_t shapes = before->shapes.high > h->shapes.high ? before->shapes.high : h->shapes.high;
+    uint32_t bodies = before->bodies.high > h->bodies.high ? before->bodies.high : h->bodies.high;
+    if (any_other(h, bodies, shapes)) {
+        renew_pairs(h);
+        renew_shapes(h, shapes);
+    }
     if (h->pairs.used > TL_APART_PER_CONTACT * h->capacity[TL_COUNT_CONTACT]) {
         drop_pairs(h); /* not to leave the contacts without room */
     }
-    for (uint32_t i = 0; i < h->pairs.high; i++) {
-        const tl_pair *p = &tl_pairs(h)[i];
-        if (p->shape_b != 0 && (tl_body_row(h)[p->body_a] || tl_body_row(h)[p->body_b])) {
-            tl_pair_set_awake(h, i);
-        }
+    if (!are_as_awake(h, before->bodies.high)) {
+        renew_awake(h);
     }
     renew_joints(h);
     renew_parted(h, before->joints.high);

@@ -8,8 +8,8 @@
 #define TL_BODY_OTHER 1u
 #define TL_SHAPE_OTHER 2u
 
-/* Before restoring: clears the marks of bodies, of which there will be `bodies`, and notes in joint_group_pool which
- * joints keep bodies apart. */
+/* Before restoring: clears the marks of bodies, of which there will be `bodies`, parts contacts from their pairs and
+ * notes in joint_group_pool which joints keep bodies apart. */
 void tl_reindex_begin(tl_header *h, uint32_t bodies);
 
 /* Brings the index in line with the state; `before` is the header of the state that the index was made for. What did

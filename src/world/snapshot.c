@@ -58,11 +58,9 @@ static uint32_t contact_code(const tl_header *h, uint32_t c) {
         word_of(head->friction[0]) | word_of(head->friction[1]) | word_of(head->friction[2]) | word_of(head->twist);
     uint32_t code = m->count | m->color << 3 | m->flags << 10 | (uint32_t)(friction != 0) << 18;
     uint32_t ids = 0;
-    for (uint32_t i = 0; i < m->count; i++) {
+    for (uint32_t i = 0; i < 4u; i++) { /* points beyond the count are all 0 */
         ids |= points->p[i].id;
         code |= (uint32_t)(word_of(points->p[i].impulse) != 0) << (20u + i);
-    }
-    for (uint32_t i = 0; i < 4u; i++) {
         code |= (uint32_t)(cache->word[i] != 0) << (24u + i);
     }
     return code | (uint32_t)(ids > 0xffffu) << 19;
@@ -92,10 +90,8 @@ static unsigned char *put_contact(unsigned char *p, const tl_header *h, uint32_t
     }
     for (uint32_t i = 0; i < m->count; i++) {
         const tl_contact_point_record *r = &points->p[i];
-        p = tl_put_words(p, r->a, 6); /* and b */
-        if (code >> (20u + i) & 1u) {
-            p = tl_put_words(p, &r->impulse, 1);
-        }
+        p = tl_put_words(p, r->a, 7); /* and b and the impulse */
+        p -= code >> (20u + i) & 1u ? 0 : 4;
         if (code >> 19 & 1u) {
             p = tl_put_word(p, r->id);
         } else {
@@ -126,17 +122,24 @@ static const unsigned char *get_contact(const unsigned char *p, const unsigned c
     if (count > TL_MANIFOLD_POINTS || (code >> 20 & 15u) >> count || (size_t)(end - p) < contact_bytes(h, code)) {
         return NULL;
     }
+    uint32_t shape_a = tl_get_word(p + 4), shape_b = shape_a >> 16;
+    if (h->shapes.high <= 0x10000u) {
+        shape_a &= 0xffffu;
+        p += 8;
+    } else {
+        shape_b = tl_get_word(p + 8);
+        p += 12;
+    }
+    for (uint32_t i = count; i < m->count && i < TL_MANIFOLD_POINTS; i++) {
+        memset(&points->p[i], 0, sizeof points->p[i]);
+    }
+    if (m->shape_a != shape_a || m->shape_b != shape_b) {
+        m->body_a = TL_NONE; /* another contact than the one that was here */
+    }
     memset(head, 0, sizeof *head);
     memset(cache, 0, sizeof *cache);
     m->count = count, m->color = code >> 3 & 127u, m->flags = code >> 10 & 255u;
-    m->shape_a = tl_get_word(p + 4);
-    if (h->shapes.high <= 0x10000u) {
-        m->shape_b = m->shape_a >> 16, m->shape_a &= 0xffffu;
-        p += 8;
-    } else {
-        m->shape_b = tl_get_word(p + 8);
-        p += 12;
-    }
+    m->shape_a = shape_a, m->shape_b = shape_b;
     m->motion = tl_get_word(p);
     tl_get_words(p + 4, head->normal, 3);
     p += 16;
@@ -162,7 +165,6 @@ static const unsigned char *get_contact(const unsigned char *p, const unsigned c
         r->id = code >> 19 & 1u ? tl_get_word(p) : (uint32_t)p[0] | (uint32_t)p[1] << 8;
         p += code >> 19 & 1u ? 4 : 2;
     }
-    memset(&points->p[count], 0, (TL_MANIFOLD_POINTS - count) * sizeof points->p[0]);
     return p;
 }
 
@@ -265,6 +267,7 @@ static tl_marks marks_of(const tl_header *h, tl_column_id column) {
     case TL_COLUMN_shapes:
     case TL_COLUMN_shape_place:
     case TL_COLUMN_shape_geometry:
+    case TL_COLUMN_shape_material:
     case TL_COLUMN_shape_category:
     case TL_COLUMN_shape_mask:
         return shape;

@@ -12,7 +12,13 @@
 #include "talus/talus.h"
 #include "world/pack.h"
 
-enum { BODIES = 60, JOINTS = 20, WORLDS = 12, STEPS = 120 };
+enum { BODIES = 60, JOINTS = 20 };
+
+/* How many worlds, and steps of each: TALUS_WORLDS, TALUS_STEPS. */
+static uint32_t setting(const char *name, uint32_t otherwise) {
+    const char *text = getenv(name);
+    return text ? (uint32_t)strtoul(text, NULL, 10) : otherwise;
+}
 
 typedef struct yard {
     talus_world world;
@@ -139,11 +145,12 @@ static void assert_alike(const talus_world *a, const talus_world *b) {
 static void goes_on_bit_for_bit(void **state) {
     (void)state;
     uint32_t base = 20260801u;
-    print_message("seed %u\n", base);
-    for (uint32_t w = 0; w < WORLDS; w++) {
+    uint32_t worlds = setting("TALUS_WORLDS", 12), steps = setting("TALUS_STEPS", 120);
+    print_message("%u worlds of %u steps from seed %u\n", (unsigned)worlds, (unsigned)steps, (unsigned)base);
+    for (uint32_t w = 0; w < worlds; w++) {
         yard y;
         open_yard(&y, base + w);
-        for (uint32_t k = 0; k < STEPS; k++) {
+        for (uint32_t k = 0; k < steps; k++) {
             size_t size;
             void *snapshot = save(&y, &size);
             uint64_t at = talus_world_hash(&y.world), hash[3];
@@ -178,13 +185,14 @@ static void goes_on_bit_for_bit(void **state) {
 static void goes_into_other_blocks(void **state) {
     (void)state;
     uint32_t base = 20261101u;
-    print_message("seed %u\n", base);
-    for (uint32_t w = 0; w < WORLDS; w++) {
+    uint32_t worlds = setting("TALUS_WORLDS", 12), steps = setting("TALUS_STEPS", 120);
+    print_message("%u worlds of %u steps from seed %u\n", (unsigned)worlds, (unsigned)steps, (unsigned)base);
+    for (uint32_t w = 0; w < worlds; w++) {
         yard y[3];
         for (int i = 0; i < 3; i++) {
             open_yard(&y[i], base + w);
         }
-        for (uint32_t k = 0; k < STEPS; k++) {
+        for (uint32_t k = 0; k < steps; k++) {
             if (k % 6u == 0) {
                 size_t size;
                 void *snapshot = save(&y[0], &size);

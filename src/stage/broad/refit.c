@@ -44,6 +44,13 @@ static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb 
     return fat;
 }
 
+static void note_looked(tl_header *h, uint32_t shape, float free) {
+    tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    t->motion = tl_body_motion(h)[tl_shapes(h)[shape].body];
+    t->free = free;
+    t->stale = 0;
+}
+
 static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
     tl_shape_track *t = &tl_shape_tracks(h)[shape];
     uint32_t body = tl_shapes(h)[shape].body;
@@ -51,8 +58,7 @@ static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt)
     t->still = tl_body_type(&tl_bodies(h)[body]) == TALUS_STATIC;
     t->fat = fattened(h, shape, box, dt);
     t->node = tl_tree_insert(h, t->still ? TL_TREE_STILL : TL_TREE_MOVING, shape, &t->fat) + 1u;
-    t->motion = tl_body_motion(h)[body];
-    t->stale = 0;
+    note_looked(h, shape, margin_of(h, shape));
     h->counters.proxies_refit++;
 }
 
@@ -64,7 +70,7 @@ void tl_shape_leave_tree(tl_header *h, uint32_t shape) {
     }
 }
 
-/* Whether a body's motion since a shape was entered, and that of the coming step, are within the fat box's margin
+/* Whether a body's motion since a shape was looked at, and that of the coming step, are within what was free then
  * whatever their direction: the cheap answer, which needs no box. */
 static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, float dt) {
     const tl_shape_track *t = &tl_shape_tracks(h)[shape];
@@ -74,7 +80,7 @@ static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, f
     uint32_t moved = tl_body_motion(h)[body] - t->motion;
     float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
     talus_vec3 far = tl_abs3(tl_row_xyz(&tl_body_pose(h)[body])); /* where boxes are rounded more coarsely */
-    return (float)moved * 1e-6f + way + 1e-6f * (far.x + far.y + far.z) < margin_of(h, shape);
+    return (float)moved * 1e-6f + way + 1e-6f * (far.x + far.y + far.z) < t->free;
 }
 
 static talus_aabb swept_of(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
@@ -88,6 +94,12 @@ static talus_aabb swept_of(const tl_header *h, uint32_t shape, const talus_aabb 
     talus_aabb swept = {tl_add(tl_sub(box->lower, margin), tl_min3(way, zero)),
                         tl_add(tl_add(box->upper, margin), tl_max3(way, zero))};
     return swept;
+}
+
+/* m: the least distance from a box to the faces of the fat box around it, beside the speculative margin. */
+static float free_within(const tl_header *h, const talus_aabb *fat, const talus_aabb *box) {
+    talus_vec3 d = tl_min3(tl_sub(box->lower, fat->lower), tl_sub(fat->upper, box->upper));
+    return tl_min(d.x, tl_min(d.y, d.z)) - h->settings.speculative_margin;
 }
 
 talus_aabb tl_shape_swept_box(const tl_header *h, const void *geometry, uint32_t shape, float dt) {
@@ -121,6 +133,8 @@ void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
             if (!tl_aabb_contains(&t->fat, &swept)) {
                 enter(h, s, &box, dt);
                 tl_shape_mark_moved(h, s);
+            } else {
+                note_looked(h, s, free_within(h, &t->fat, &box));
             }
         }
     }

@@ -95,6 +95,11 @@ void tl_contact_enter(tl_header *h, uint32_t contact) {
     if (pair == TL_NONE) {
         pair = tl_pair_make_for_contact(h, meta->shape_a, meta->shape_b);
     }
+    tl_contact_tie(h, contact, pair);
+}
+
+void tl_contact_tie(tl_header *h, uint32_t contact, uint32_t pair) {
+    const tl_contact_meta *meta = &tl_contacts(h)[contact];
     tl_pairs(h)[pair].contact = contact;
     tl_contact_pair(h)[contact] = pair;
     if (tl_body_row(h)[meta->body_a] || tl_body_row(h)[meta->body_b]) {

@@ -12,6 +12,7 @@ uint32_t tl_contact_make(tl_header *h, uint32_t shape_a, uint32_t shape_b);
 void tl_contact_clear(tl_header *h, uint32_t contact);
 /* Ties a contact to its pair, which is made if there is none. */
 void tl_contact_enter(tl_header *h, uint32_t contact);
+void tl_contact_tie(tl_header *h, uint32_t contact, uint32_t pair);
 /* `clear` is what the pair keeps of how far the shapes are apart (tl_pair.clear). */
 void tl_contact_end(tl_header *h, uint32_t contact, uint32_t clear);
 /* Friction, restitution and rolling resistance of the pair, from the two materials. */

@@ -64,8 +64,9 @@ typedef struct tl_shape_track {
     uint32_t node;   /* the leaf plus one, 0 if it is in no tree */
     uint32_t still;  /* it is in the tree of what does not move */
     uint32_t moved;  /* its place in moved_shape plus one, 0 if it is not there */
-    uint32_t motion; /* the body's count when the fat box was made */
-    uint32_t stale;  /* the count says nothing: look at the box */
+    uint32_t motion; /* the body's count when the box was last looked at */
+    float free;      /* m: how far it was within the fat box then, beside the speculative margin */
+    uint32_t stale;  /* neither says anything: look at the box */
 } tl_shape_track;
 
 typedef struct tl_material {
