@@ -25,6 +25,7 @@ typedef struct yard {
     void *block;
     uint32_t seed;
     talus_body body[BODIES];
+    talus_shape shape[BODIES];
     talus_joint joint[JOINTS];
 } yard;
 
@@ -64,13 +65,40 @@ static void add_body(yard *y, uint32_t i) {
     }
     for (uint32_t k = 0; k <= pick(y, 3); k++) {
         talus_shape_def s = talus_shape_def_default();
-        talus_shape shape;
         s.geometry.type = (talus_shape_type)pick(y, 4);
         s.geometry.radius = s.geometry.radius_top = s.geometry.radius_bottom = between(y, 0.2f, 0.5f);
         s.geometry.half_height = between(y, 0.1f, 0.5f);
         s.sensor = pick(y, 9) == 0;
         s.events = pick(y, 2) == 0;
-        talus_shape_create(&y->world, y->body[i], &s, &shape);
+        talus_shape_create(&y->world, y->body[i], &s, &y->shape[i]);
+    }
+}
+
+/* What changes a body or shape that is there. */
+static void change(yard *y, uint32_t i) {
+    talus_filter filter = {1u + pick(y, 3), pick(y, 3) ? ~(uint64_t)0 : pick(y, 4), pick(y, 5) ? 0 : -1};
+    talus_material material = talus_shape_def_default().material;
+    switch (pick(y, 7)) {
+    case 0:
+    case 1:
+        talus_shape_set_filter(&y->world, y->shape[i], &filter);
+        break;
+    case 2:
+        material.static_friction = material.dynamic_friction = between(y, 0, 1);
+        talus_shape_set_material(&y->world, y->shape[i], &material);
+        break;
+    case 3:
+        talus_shape_destroy(&y->world, y->shape[i]);
+        break;
+    case 4:
+        talus_body_set_locks(&y->world, y->body[i], pick(y, 64));
+        break;
+    case 5:
+        talus_body_wake(&y->world, y->body[i]);
+        break;
+    default:
+        talus_body_mass_from_shapes(&y->world, y->body[i]);
+        break;
     }
 }
 
@@ -89,7 +117,7 @@ static void add_joint(yard *y) {
 /* One random command; many are refused, which is part of the test. */
 static void command(yard *y) {
     uint32_t i = pick(y, BODIES);
-    switch (pick(y, 10)) {
+    switch (pick(y, 12)) {
     case 0:
     case 1:
     case 2:
@@ -116,6 +144,10 @@ static void command(yard *y) {
         break;
     case 8:
         talus_body_set_velocity(&y->world, y->body[i], (talus_vec3){between(y, -3, 3), 0, 0}, (talus_vec3){0, 0, 0});
+        break;
+    case 9:
+    case 10:
+        change(y, i);
         break;
     default:
         talus_body_apply_impulse(&y->world, y->body[i], (talus_vec3){0, between(y, 0, 500), 0},
@@ -172,6 +204,7 @@ static void goes_on_bit_for_bit(void **state) {
                     y.seed = here.seed;
                     memcpy(y.body, here.body, sizeof y.body);
                     memcpy(y.joint, here.joint, sizeof y.joint);
+                    memcpy(y.shape, here.shape, sizeof y.shape);
                 }
             }
             free(snapshot);

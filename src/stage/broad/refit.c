@@ -7,6 +7,8 @@
 #define FAT_MARGIN 0.05f
 #define FAT_SHARE 0.1f /* of the shape's reach, if that is less */
 #define FAT_STEPS 4.0f
+/* m: below what a body's motion is counted as at most in a step, so that no step is missed. */
+#define MOST_FREE 900.0f
 
 tl_convex tl_shape_convex(const tl_header *h, const void *geometry, uint32_t shape) {
     tl_convex c = {tl_shape_geometry(h)[shape], NULL};
@@ -47,7 +49,7 @@ static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb 
 static void note_looked(tl_header *h, uint32_t shape, float free) {
     tl_shape_track *t = &tl_shape_tracks(h)[shape];
     t->motion = tl_body_motion(h)[tl_shapes(h)[shape].body];
-    t->free = free;
+    t->free = tl_min(free, MOST_FREE);
     t->stale = 0;
 }
 
