@@ -3,7 +3,15 @@
 #ifndef TL_VEC_H
 #define TL_VEC_H
 
+#include <float.h>
+
 #include "talus/types.h"
+
+/* The same bits everywhere ask for floats that are worked out as floats: on s390 by -fexcess-precision=fast, on 32-bit
+ * x86 by -msse2 -mfpmath=sse. */
+#if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
+#error "this compiler does not work floats out as floats (FLT_EVAL_METHOD)"
+#endif
 
 float sqrtf(float); /* the one mathematical function that the core takes from outside; it is exact by IEEE 754 */
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/trig.h"
+#include "geom/hull.h"
 
 uint32_t golden_hull[GOLDEN_HULLS];
 
@@ -195,7 +196,24 @@ static void run_trigonometry(void) {
     print("trigonometry", 20000, hash);
 }
 
-/* Cooks the hulls; their blobs are hashed by words. */
+/* A blob by its members: words of 32 bits up to the links, which have 16. The checksum is of one machine's bytes. */
+static uint64_t fold_hull(uint64_t hash, const unsigned char *blob) {
+    talus_hull h;
+    memcpy(&h, blob, sizeof h);
+    for (size_t i = 0; i < h.vertex_edge; i += 4u) {
+        uint32_t word;
+        memcpy(&word, blob + i, 4u);
+        hash = i == offsetof(talus_hull, checksum) ? hash : fold(hash, word);
+    }
+    for (size_t i = h.vertex_edge; i < h.bytes; i += 2u) {
+        uint16_t word;
+        memcpy(&word, blob + i, 2u);
+        hash = fold(hash, word);
+    }
+    return hash;
+}
+
+/* Cooks the hulls. */
 static size_t run_hulls(unsigned char *region, size_t room) {
     static talus_vec3 points[200];
     static const uint32_t counts[GOLDEN_HULLS] = {12, 24, 60, 200};
@@ -217,11 +235,7 @@ static size_t run_hulls(unsigned char *region, size_t room) {
         golden_check(talus_hull_build(points, counts[k], aligned, scratch_size, region + used, room - used, &size),
                      "hull");
         golden_hull[k] = (uint32_t)used;
-        for (size_t i = 0; i + 4u <= size; i += 4u) {
-            uint32_t word;
-            memcpy(&word, region + used + i, 4u);
-            hash = fold(hash, word);
-        }
+        hash = fold_hull(hash, region + used);
         used += (size + TALUS_BLOB_ALIGNMENT - 1u) / TALUS_BLOB_ALIGNMENT * TALUS_BLOB_ALIGNMENT;
     }
     free(scratch);

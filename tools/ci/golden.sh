@@ -40,7 +40,11 @@ one() {
         failed=$((failed + 1))
     fi
     for isa in $isas; do
-        $4 "$dir/golden$exe" "$isa" >"$dir/$isa.txt" 2>"$dir/$isa.err"
+        if ! $4 "$dir/golden$exe" "$isa" >"$dir/$isa.txt" 2>"$dir/$isa.err"; then
+            row "$1" "$isa" "DID NOT FINISH: $(tail -1 "$dir/$isa.err")"
+            failed=$((failed + 1))
+            continue
+        fi
         if [ $compared -eq 0 ]; then
             compared=1
             if ! cmp -s "$dir/$isa.txt" "$want"; then
@@ -80,6 +84,12 @@ others() {
     for level in 0 3; do
         echo "i686-O$level|i686-linux-gnu-gcc|-O$level -msse2 -mfpmath=sse|qemu-i386"
     done
+    # words of 32 bits, and the high byte first
+    echo "armhf-O2|arm-linux-gnueabihf-gcc|-O2|qemu-arm"
+    echo "riscv64-O2|riscv64-linux-gnu-gcc|-O2|qemu-riscv64"
+    echo "ppc64le-O2|powerpc64le-linux-gnu-gcc|-O2|qemu-ppc64le"
+    echo "ppc64-O2|powerpc64-linux-gnu-gcc|-O2|qemu-ppc64"
+    echo "s390x-O2|s390x-linux-gnu-gcc|-O2|qemu-s390x"
     for level in 0 2 3; do
         echo "wasm-O$level|clang --target=wasm32-wasi|-O$level|node --no-warnings tools/ci/wasi.js"
     done
@@ -91,5 +101,7 @@ while IFS='|' read -r name compiler flags runner; do
 done <<END
 $lines
 END
+echo
+sed 's/^\([^ ]*\) \([^ ]*\) \(.*\)$/  \1 (\2 steps) \3/' "$want" | awk '{ printf "  %-24s %-14s %s\n", $1, $2 " " $3, $4 }'
 echo "golden: $passed same, $failed not, $skipped skipped"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]

@@ -1,7 +1,8 @@
 #!/bin/sh
-# Installs what the build needs beyond git, make and a C compiler. install-deps.sh [base|full]
+# Installs what the build needs beyond git, make and a C compiler. install-deps.sh [base|full|matrix]
 #   base: cJSON for the tool, cmocka, libccd and Box2D for the tests
-#   full: clang, the cross compilers, emulators and checkers that `make golden`, `make fuzz`, `make lint` and CI use
+#   full: clang, the cross compilers, emulators and checkers that `make fuzz`, `make lint` and CI use
+#   matrix: besides, the cross compilers of all machines that `make golden` compares
 # Does nothing, and quickly, when all of it is there.
 set -u
 what=${1:-base}
@@ -23,7 +24,7 @@ if ls tests/*/*.cpp >/dev/null 2>&1; then
     need_program g++ g++
     [ -e /usr/include/box2d/box2d.h ] || [ -e /usr/local/include/box2d/box2d.h ] || missing="$missing libbox2d-dev"
 fi
-if [ "$what" = full ]; then
+if [ "$what" = full ] || [ "$what" = matrix ]; then
     need_program g++ g++
     need_program pkg-config pkg-config
     need_program cmake cmake
@@ -46,6 +47,18 @@ if [ "$what" = full ]; then
         missing="$missing libclang-rt-$major-dev-wasm32"
     ls /usr/lib/llvm-"$major"/lib/clang/*/lib/linux/libclang_rt.fuzzer-x86_64.a >/dev/null 2>&1 ||
         missing="$missing libclang-rt-$major-dev"
+fi
+if [ "$what" = matrix ]; then
+    need_program gcc-arm-linux-gnueabihf arm-linux-gnueabihf-gcc
+    need_file libc6-dev-armhf-cross /usr/arm-linux-gnueabihf/include/stdio.h
+    need_program gcc-riscv64-linux-gnu riscv64-linux-gnu-gcc
+    need_file libc6-dev-riscv64-cross /usr/riscv64-linux-gnu/include/stdio.h
+    need_program gcc-powerpc64-linux-gnu powerpc64-linux-gnu-gcc
+    need_file libc6-dev-ppc64-cross /usr/powerpc64-linux-gnu/include/stdio.h
+    need_program gcc-powerpc64le-linux-gnu powerpc64le-linux-gnu-gcc
+    need_file libc6-dev-ppc64el-cross /usr/powerpc64le-linux-gnu/include/stdio.h
+    need_program gcc-s390x-linux-gnu s390x-linux-gnu-gcc
+    need_file libc6-dev-s390x-cross /usr/s390x-linux-gnu/include/stdio.h
 fi
 [ -n "$missing" ] || exit 0
 
