@@ -7,6 +7,7 @@
 #include "talus/hull.h"
 #include "talus/joint.h"
 #include "talus/loop.h"
+#include "talus/profile.h"
 #include "talus/shape.h"
 #include "talus/snapshot.h"
 #include "talus/types.h"

@@ -11,7 +11,7 @@
 typedef struct snapshot_header {
     uint32_t magic, version;
     uint32_t bytes_low, bytes_high;
-    uint32_t capacity[TL_COUNT_COUNT];
+    uint32_t capacity[TL_COUNT_OF_STATE];
 } snapshot_header;
 
 static unsigned char *state_of(const tl_header *h) { return (unsigned char *)(uintptr_t)&h->settings; }
@@ -120,5 +120,6 @@ talus_status talus_world_restore(talus_world *world, const void *snapshot, size_
         }
     }
     tl_pairs_rebuild(h);
+    tl_ties_changed(h);
     return TALUS_OK;
 }

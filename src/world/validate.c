@@ -39,7 +39,8 @@ static int header_is_sound(const tl_header *h) {
            pool_is_sound(&h->contacts, capacity[TL_COUNT_CONTACT]) &&
            pool_is_sound(&h->joints, capacity[TL_COUNT_JOINT]) && h->awake_bodies < capacity[TL_COUNT_BODY] &&
            h->awake_contacts <= capacity[TL_COUNT_CONTACT] && h->awake_joints <= capacity[TL_COUNT_JOINT] &&
-           h->moved_shapes <= capacity[TL_COUNT_SHAPE];
+           h->moved_shapes <= capacity[TL_COUNT_SHAPE] && h->frames <= capacity[TL_COUNT_FRAME] &&
+           (h->next_frame < capacity[TL_COUNT_FRAME] || h->next_frame == 0);
 }
 
 /* --- bodies and shapes ------------------------------------------------------------------------ */

@@ -93,6 +93,7 @@ static void sleep_islands(tl_header *h, float time) {
         tl_body_clear_awake(h, b);
         slept++;
     }
+    h->counters.bodies_slept += slept;
     if (slept) {
         tl_lists_drop_sleeping(h);
     }

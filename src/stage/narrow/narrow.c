@@ -88,6 +88,7 @@ static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const
 
 static void begin_touch(tl_header *h, tl_contact_meta *meta) {
     meta->flags |= TL_CONTACT_TOUCHING;
+    h->counters.touches_begun++;
     if (!(meta->flags & TL_CONTACT_SENSOR)) {
         meta->flags |= TL_CONTACT_COLORED;
         meta->color = tl_color_take(h, meta->body_a, meta->body_b);
@@ -97,6 +98,7 @@ static void begin_touch(tl_header *h, tl_contact_meta *meta) {
 }
 
 static void end_touch(tl_header *h, tl_contact_meta *meta) {
+    h->counters.touches_ended++;
     if (meta->flags & TL_CONTACT_COLORED) {
         tl_color_give(h, meta->body_a, meta->body_b, meta->color);
     }
@@ -177,7 +179,8 @@ static int parted_by_balls(tl_step *step, uint32_t c) {
 void tl_stage_narrow(tl_step *step) {
     tl_header *h = step->h;
     talus_counters *n = &h->counters;
-    n->manifolds_made = n->manifolds_kept = n->pairs_ended = n->contacts_touching = n->contact_points = 0;
+    n->manifolds_made = n->manifolds_first = n->manifolds_kept = n->pairs_ended = 0;
+    n->contacts_touching = n->contact_points = n->touches_begun = n->touches_ended = 0;
     const uint32_t *motion = tl_body_motion(h);
     for (uint32_t k = 0; k < h->awake_contacts;) {
         uint32_t c = tl_awake_contact(h)[k];
@@ -189,11 +192,13 @@ void tl_stage_narrow(tl_step *step) {
             continue;
         }
         if (fat_boxes_part(h, &tl_contact_links(h)[c])) {
+            n->touches_ended += (meta->flags & TL_CONTACT_TOUCHING) != 0;
             tl_event_contact_end(h, c);
             tl_contact_end(h, c);
             n->pairs_ended++;
             continue; /* another contact stands at k now */
         }
+        n->manifolds_first += (meta->flags & TL_CONTACT_FRESH) != 0;
         if (!parted_by_balls(step, c)) {
             make_manifold(step, c);
         }

@@ -2,8 +2,8 @@
  *
  * X(name, type, count, stage, life, word): `count` names a capacity, `stage` the one stage that writes the column
  * during a step, `life` whether it is part of the state (STATE: hashed, compared, saved), can be found anew from it
- * (INDEX) or lives for one step (STEP), `word` the bytes of its members, which are all of one size so that the hash
- * does not depend on the byte order. */
+ * (INDEX) or is what steps leave behind (STEP), `word` the bytes of its members, which are all of one size so that the
+ * hash does not depend on the byte order. */
 #ifndef TL_COLUMNS_H
 #define TL_COLUMNS_H
 
@@ -75,6 +75,10 @@
     X(event_hit, talus_hit_event, EVENT, EVENTS, STEP, 4)                                                              \
     X(event_sensor_begin, talus_sensor_event, EVENT, EVENTS, STEP, 4)                                                  \
     X(event_sensor_end, talus_sensor_event, EVENT, EVENTS, STEP, 4)                                                    \
-    X(event_broken, talus_joint_event, EVENT, EVENTS, STEP, 4)
+    X(event_broken, talus_joint_event, EVENT, EVENTS, STEP, 4)                                                         \
+    /* the profiler */                                                                                                 \
+    X(row_island, uint32_t, TALLY, COMMIT, STEP, 4)                                                                    \
+    X(tallies, tl_island_tally, TALLY, COMMIT, STEP, 4)                                                                \
+    X(ring, talus_frame, FRAME, EVENTS, STEP, 8)
 
 #endif
