@@ -57,7 +57,7 @@ OBJ := $(SRC:%.c=$(BUILD)/%.o)
 TOOL_MAIN := $(wildcard tools/talus/main.c)
 TOOLS_SRC := $(sort $(filter-out %/main.c,$(wildcard tools/gltf/*.c tools/talus/*.c platform/host/*.c)))
 TOOLS_LIB = $(BUILD)/libtools.a
-TOOLS_OBJ := $(TOOLS_SRC:%.c=$(BUILD)/%.o)
+TOOLS_OBJ := $(TOOLS_SRC:%.c=$(BUILD)/%.o) $(BUILD)/tools/talus/profile_page.o
 
 # tests/*/NAME_test.c is a program each; what else lies there, but for fuzzers and *_main.c, is linked to all of them.
 TEST_SRC := $(sort $(wildcard tests/*/*_test.c))
@@ -117,6 +117,16 @@ $(BUILD)/%_avx2.o: %_avx2.c $(BUILD)/flags
 
 $(BUILD)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
+	@echo "  CC $<"
+	$(Q)$(CC) $(C_FLAGS) $(INCLUDES) $(DEPENDS) -c $< -o $@
+
+# The page as bytes: a string of its length is more than C99 promises to take.
+$(BUILD)/tools/talus/profile_page.c: tools/talus/profile_page.html
+	@mkdir -p $(@D)
+	@{ echo '#include "talus/profile_page.h"'; echo 'const unsigned char profile_page[] = {'; \
+	    od -An -v -tx1 $< | sed 's/ *\([0-9a-f][0-9a-f]\)/0x\1,/g'; echo '0};'; } > $@
+
+$(BUILD)/%.o: $(BUILD)/%.c $(BUILD)/flags
 	@echo "  CC $<"
 	$(Q)$(CC) $(C_FLAGS) $(INCLUDES) $(DEPENDS) -c $< -o $@
 
