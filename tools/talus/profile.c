@@ -25,10 +25,10 @@ typedef struct profile_options {
     uint64_t steps; /* UINT64_MAX: the scene's */
     uint32_t runs;
     double budget_ms; /* 0: none */
-    int json;
+    int json, compare;
 } profile_options;
 
-enum { STEPS = 1, RUN_COUNT, SUBSTEPS, ISA, NO_SLEEP, JSON, CSV, TRACE, HTML, BUDGET, HELP };
+enum { STEPS = 1, RUN_COUNT, SUBSTEPS, ISA, NO_SLEEP, JSON, CSV, TRACE, HTML, BUDGET, COMPARE, HELP };
 
 static const struct option long_options[] = {{"steps", required_argument, NULL, STEPS},
                                              {"runs", required_argument, NULL, RUN_COUNT},
@@ -40,6 +40,7 @@ static const struct option long_options[] = {{"steps", required_argument, NULL, 
                                              {"trace", required_argument, NULL, TRACE},
                                              {"html", required_argument, NULL, HTML},
                                              {"budget", required_argument, NULL, BUDGET},
+                                             {"compare", no_argument, NULL, COMPARE},
                                              {"help", no_argument, NULL, HELP},
                                              {NULL, 0, NULL, 0}};
 
@@ -67,6 +68,9 @@ static int take_option(int option, profile_options *out) {
         return 0;
     case JSON:
         out->json = 1;
+        return 0;
+    case COMPARE:
+        out->compare = 1;
         return 0;
     case CSV:
         out->csv = optarg;
@@ -206,6 +210,11 @@ int tool_profile(int count, char **arguments) {
         if (option == HELP || status != 0) {
             return status;
         }
+    }
+    if (options.compare) {
+        return optind + 2 == count
+                   ? profile_compare(arguments[optind], arguments[optind + 1])
+                   : tool_fail(TOOL_USAGE, "profile: --compare takes two profiles; see: talus help profile");
     }
     if (optind + 1 != count) {
         return tool_fail(TOOL_USAGE, "profile: %s; see: talus help profile",

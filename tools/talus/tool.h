@@ -16,6 +16,10 @@ int tool_run(int count, char **arguments);
 int tool_profile(int count, char **arguments);
 int tool_scene(int count, char **arguments);
 
+/* Says whether the profile saved in B is slower than that in A, on the standard output: TOOL_SLOW then. An exit status.
+ */
+int profile_compare(const char *path_a, const char *path_b);
+
 /* The manual page of a subcommand, or of the tool if it is null; 0 if there is none. */
 int tool_print_manual(const char *subcommand);
 
