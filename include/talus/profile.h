@@ -25,7 +25,8 @@ extern "C" {
  * contacts among the contacts looked at, of rows, solve, relax and restitution by its constraint rows, of velocity,
  * position and commit by its bodies. The other stages are shared out to none. */
 typedef struct talus_frame_island {
-    talus_body body; /* one of them */
+    talus_body body; /* the one that most contacts and joints hold on to */
+    uint32_t held;   /* how many those are */
     uint32_t bodies, contacts, joints;
     uint32_t rows; /* constraint rows: of a contact its points and three of friction; of a joint its own */
     uint64_t ticks;

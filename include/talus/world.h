@@ -142,6 +142,7 @@ typedef struct talus_counters {
     uint32_t joints_solved, joints_sleeping;
     uint32_t islands, islands_slept, islands_woken;
     uint32_t bodies_slept, bodies_woken; /* with those islands */
+    uint32_t sleep_searched;             /* 1: bodies were slow for long enough to look for islands that may sleep */
     uint32_t colors;
     uint32_t lane_groups;         /* groups of eight in the solver */
     uint32_t lanes_used;          /* lanes that held a constraint */

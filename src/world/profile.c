@@ -55,15 +55,17 @@ static void unite(uint32_t *parent, uint32_t a, uint32_t b) {
     }
 }
 
-/* Ties the two ends of a constraint; returns a row of the island that it belongs to. */
-static uint32_t tie(uint32_t *parent, uint32_t a, uint32_t b) {
+/* Ties the two ends of a constraint; returns the tally of one that is in an island. */
+static tl_island_tally *tie(uint32_t *parent, tl_island_tally *tally, uint32_t a, uint32_t b) {
+    tally[a].held++;
+    tally[b].held++;
     if (!parent[a]) {
-        return b;
+        return &tally[b];
     }
     if (parent[b]) {
         unite(parent, a, b);
     }
-    return a;
+    return &tally[a];
 }
 
 static void begin_rows(const tl_header *h, uint32_t rows) {
@@ -77,6 +79,7 @@ static void begin_rows(const tl_header *h, uint32_t rows) {
         uint32_t dynamic = tl_body_type(&bodies[awake[row - 1u]]) == TALUS_DYNAMIC;
         parent[row] = dynamic * row;
         tally[row].bodies = dynamic;
+        tally[row].busiest = row;
     }
 }
 
@@ -108,7 +111,7 @@ static void tally_constraints(const tl_header *h) {
         count = fetch_contacts(h, first, batch);
         for (uint32_t i = 0; i < count; i++) {
             for (uint32_t k = 0; k < batch[i].lanes; k++) {
-                tl_island_tally *t = &tally[tie(parent, batch[i].a[k], batch[i].b[k])];
+                tl_island_tally *t = tie(parent, tally, batch[i].a[k], batch[i].b[k]);
                 t->contacts++;
                 t->rows += batch[i].rows;
             }
@@ -117,7 +120,7 @@ static void tally_constraints(const tl_header *h) {
     for (uint32_t i = 0; i < h->joint_groups; i++) {
         const tl_joint_group *g = &tl_joint_group_pool(h)[i];
         for (uint32_t k = 0; k < g->lanes; k++) {
-            tl_island_tally *t = &tally[tie(parent, g->a[k], g->b[k])];
+            tl_island_tally *t = tie(parent, tally, g->a[k], g->b[k]);
             t->joints++;
             t->rows += g->rows;
         }
@@ -136,7 +139,9 @@ static void gather(const tl_header *h, uint32_t rows) {
         uint32_t root = parent[parent[row]];
         parent[row] = root;
         if (root != row) {
-            add(&tally[root], &tally[row]);
+            tl_island_tally *r = &tally[root];
+            add(r, &tally[row]);
+            r->busiest = tally[row].held > tally[r->busiest].held ? row : r->busiest;
         }
     }
 }
@@ -190,7 +195,8 @@ static void tally_islands(tl_header *h, talus_frame *frame) {
     for (uint32_t i = 0; i < frame->largest_count; i++) {
         const tl_island_tally *from = &tally[found[i]];
         talus_frame_island *to = &frame->largest[i];
-        to->body.index = tl_awake_body(h)[found[i] - 1u];
+        to->body.index = tl_awake_body(h)[from->busiest - 1u];
+        to->held = tally[from->busiest].held;
         to->body.generation = tl_bodies(h)[to->body.index].generation;
         to->bodies = from->bodies, to->contacts = from->contacts;
         to->joints = from->joints, to->rows = from->rows;

@@ -171,6 +171,7 @@ static void islands_are_those_that_are_tied(void **state) {
     assert_int_equal(frame.largest_count, 4);
     assert_int_equal(bodies_of(&frame), 11);
     const uint32_t bodies[4] = {5, 3, 2, 1}, contacts[4] = {5, 3, 0, 0}, joints[4] = {0, 0, 1, 0};
+    const uint32_t held[4] = {2, 2, 1, 0};
     for (int i = 0; i < 4; i++) {
         assert_int_equal(frame.largest[i].bodies, bodies[i]);
         assert_int_equal(frame.largest[i].contacts, contacts[i]);
@@ -178,6 +179,7 @@ static void islands_are_those_that_are_tied(void **state) {
         talus_pose pose;
         OK(talus_body_get_pose(&world, frame.largest[i].body, &pose));
         assert_true(fabsf(pose.position.x) < 1.0f || i > 0);
+        assert_int_equal(frame.largest[i].held, held[i]);
     }
     assert_int_equal(frame.largest[0].rows, 5 * 7);
     uint64_t shared = 0;

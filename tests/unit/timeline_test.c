@@ -65,6 +65,7 @@ static timeline made(void) {
         f->counters.islands_woken = i == 30, f->counters.bodies_woken = i == 30 ? 300 : 0;
         f->islands = 3, f->largest_count = 1;
         f->largest[0].body.index = 1, f->largest[0].bodies = 20, f->largest[0].contacts = 60;
+        f->largest[0].held = 9;
         f->largest[0].ticks = f->time.total / 2;
         t.run_ns[i] = f->time.total;
     }
@@ -93,8 +94,8 @@ static void says_why(void **state) {
         timeline_explain(&t, &median, worst[i], &text);
         assert_memory_equal(text.data, expected[i], strlen(expected[i]));
         assert_non_null(strstr(text.data,
-                               "the largest of 3 islands has bob and 19 more bodies, 60 contacts, 0 joints: 50 % "
-                               "of the step"));
+                               "the largest of 3 islands, around bob that 9 contacts and joints hold: 20 bodies, "
+                               "60 contacts, 0 joints, 50 % of the step"));
         gltf_text_free(&text);
     }
     timeline_free(&t);
@@ -122,7 +123,7 @@ static void draws(void **state) {
         timeline_print(&t, budget ? 2.0 : 0.0, &text);
         assert_non_null(strstr(text.data, "step 31, 4.0000 ms: solve"));
         assert_true((strstr(text.data, "3 of 40 go over") != NULL) == budget);
-        assert_true((strstr(text.data, "island of bob: 20 bodies, 60 contacts") != NULL) == budget);
+        assert_true((strstr(text.data, "island around bob (held by 9): 20 bodies, 60 contacts") != NULL) == budget);
         gltf_text_free(&text);
     }
     timeline_free(&t);

@@ -25,9 +25,11 @@ enum {
     JOINTS_SOLVED,
     JOINTS_SLEEPING,
     ISLANDS,
+    ISLANDS_AGE,
     ISLANDS_SLEPT,
     ISLANDS_WOKEN,
     BODIES_SLEPT,
+    SLEEP_SEARCHED,
     BODIES_WOKEN,
     COLORS,
     LANE_GROUPS,
@@ -37,7 +39,7 @@ enum {
     COUNTS
 };
 
-const timeline_count timeline_counts[] = {
+const timeline_count timeline_counts[COUNTS] = {
     COUNTER(awake_bodies, "bodies awake", "body awake"),
     COUNTER(sleeping_bodies, "bodies asleep", "body asleep"),
     COUNTER(proxies_refit, "boxes entered anew", "box entered anew"),
@@ -54,9 +56,12 @@ const timeline_count timeline_counts[] = {
     COUNTER(joints_solved, "joints solved", "joint solved"),
     COUNTER(joints_sleeping, "joints asleep", "joint asleep"),
     {"islands", "islands", "island", offsetof(talus_frame, islands)},
+    {"islands_age", "steps since the islands were counted", "step since the islands were counted",
+     offsetof(talus_frame, islands_age)},
     COUNTER(islands_slept, "islands put to sleep", "island put to sleep"),
     COUNTER(islands_woken, "islands woken", "island woken"),
     COUNTER(bodies_slept, "bodies put to sleep", "body put to sleep"),
+    COUNTER(sleep_searched, "searches for islands that may sleep", "search for islands that may sleep"),
     COUNTER(bodies_woken, "bodies woken", "body woken"),
     COUNTER(colors, "colours", "colour"),
     COUNTER(lane_groups, "groups of eight", "group of eight"),
@@ -68,21 +73,21 @@ const uint32_t timeline_count_count = COUNTS;
 
 /* What makes a stage long, the likeliest first; closed by COUNTS. */
 static const unsigned char CAUSES[TALUS_STAGE_COUNT][5] = {
-    {COUNTS},                                                           /* commands */
-    {PROXIES_REFIT, AWAKE_BODIES, COUNTS},                              /* refit */
-    {PAIRS_MADE, PROXIES_REFIT, COUNTS},                                /* pairs */
-    {MANIFOLDS_MADE, MANIFOLDS_FIRST, BODIES_WOKEN, COUNTS},            /* narrow */
-    {COUNTS},                                                           /* islands */
-    {CONTACTS_TOUCHING, JOINTS_SOLVED, AWAKE_BODIES, COUNTS},           /* rows */
-    {AWAKE_BODIES, COUNTS},                                             /* velocity */
-    {CONTACTS_TOUCHING, CONTACT_POINTS, JOINTS_SOLVED, COLORS, COUNTS}, /* solve */
-    {AWAKE_BODIES, COUNTS},                                             /* position */
-    {GROUPS_PUSHED, CONTACTS_TOUCHING, JOINTS_SOLVED, COUNTS},          /* relax */
-    {GROUPS_BOUNCING, COUNTS},                                          /* restitution */
-    {COUNTS},                                                           /* ccd */
-    {AWAKE_BODIES, COUNTS},                                             /* commit */
-    {BODIES_SLEPT, ISLANDS_SLEPT, AWAKE_BODIES, COUNTS},                /* sleep */
-    {TOUCHES_BEGUN, TOUCHES_ENDED, COUNTS},                             /* events */
+    {COUNTS},                                                            /* commands */
+    {PROXIES_REFIT, AWAKE_BODIES, COUNTS},                               /* refit */
+    {PAIRS_MADE, PROXIES_REFIT, COUNTS},                                 /* pairs */
+    {MANIFOLDS_MADE, MANIFOLDS_FIRST, BODIES_WOKEN, COUNTS},             /* narrow */
+    {COUNTS},                                                            /* islands */
+    {CONTACTS_TOUCHING, JOINTS_SOLVED, AWAKE_BODIES, COUNTS},            /* rows */
+    {AWAKE_BODIES, COUNTS},                                              /* velocity */
+    {CONTACTS_TOUCHING, CONTACT_POINTS, JOINTS_SOLVED, COLORS, COUNTS},  /* solve */
+    {AWAKE_BODIES, COUNTS},                                              /* position */
+    {GROUPS_PUSHED, CONTACTS_TOUCHING, JOINTS_SOLVED, COUNTS},           /* relax */
+    {GROUPS_BOUNCING, COUNTS},                                           /* restitution */
+    {COUNTS},                                                            /* ccd */
+    {AWAKE_BODIES, COUNTS},                                              /* commit */
+    {BODIES_SLEPT, ISLANDS_SLEPT, SLEEP_SEARCHED, AWAKE_BODIES, COUNTS}, /* sleep */
+    {TOUCHES_BEGUN, TOUCHES_ENDED, COUNTS},                              /* events */
 };
 
 uint32_t timeline_counted(const talus_frame *frame, uint32_t count) {
@@ -193,15 +198,22 @@ static int next_stage(const talus_frame *frame, const talus_frame *median, const
 static void explain_islands(const timeline *t, const talus_frame *frame, gltf_text *out) {
     const talus_frame_island *island = &frame->largest[0];
     if (frame->counters.islands_woken > 0) {
-        gltf_text_add(out, "; %" PRIu32 " island%s of %" PRIu32 " bodies woke", frame->counters.islands_woken,
-                      frame->counters.islands_woken == 1 ? "" : "s", frame->counters.bodies_woken);
+        gltf_text_add(out, "; %" PRIu32 " island%s of %" PRIu32 " %s woke", frame->counters.islands_woken,
+                      frame->counters.islands_woken == 1 ? "" : "s", frame->counters.bodies_woken,
+                      frame->counters.bodies_woken == 1 ? "body" : "bodies");
     }
     if (frame->largest_count > 0 && frame->time.total > 0) {
         gltf_text_add(out,
-                      "; the largest of %" PRIu32 " islands has %s and %" PRIu32 " more bodies, %" PRIu32
-                      " contacts, %" PRIu32 " joints: %.0f %% of the step",
-                      frame->islands, timeline_name(t, island->body.index), island->bodies - 1, island->contacts,
-                      island->joints, 100.0 * (double)island->ticks / (double)frame->time.total);
+                      "; the largest of %" PRIu32 " island%s, around %s that %" PRIu32
+                      " contacts and joints hold: %" PRIu32 " bodies, %" PRIu32 " contacts, %" PRIu32
+                      " joints, %.0f %% of the step",
+                      frame->islands, frame->islands == 1 ? "" : "s", timeline_name(t, island->body.index),
+                      island->held, island->bodies, island->contacts, island->joints,
+                      100.0 * (double)island->ticks / (double)frame->time.total);
+        if (frame->islands_age > 0) {
+            gltf_text_add(out, ", as counted %" PRIu32 " step%s before", frame->islands_age,
+                          frame->islands_age == 1 ? "" : "s");
+        }
     }
 }
 

@@ -28,9 +28,9 @@ static void add_frame(const timeline *t, const talus_frame *f, gltf_text *out) {
         gltf_text_add(out, "%s{\"body\":", i == 0 ? "" : ",");
         gltf_text_quoted(out, timeline_name(t, island->body.index));
         gltf_text_add(out,
-                      ",\"bodies\":%" PRIu32 ",\"contacts\":%" PRIu32 ",\"joints\":%" PRIu32 ",\"rows\":%" PRIu32
-                      ",\"ns\":%" PRIu64 "}",
-                      island->bodies, island->contacts, island->joints, island->rows, island->ticks);
+                      ",\"held\":%" PRIu32 ",\"bodies\":%" PRIu32 ",\"contacts\":%" PRIu32 ",\"joints\":%" PRIu32
+                      ",\"rows\":%" PRIu32 ",\"ns\":%" PRIu64 "}",
+                      island->held, island->bodies, island->contacts, island->joints, island->rows, island->ticks);
     }
     gltf_text_add(out, "]}");
 }

@@ -72,9 +72,10 @@ static void add_over(const timeline *t, const talus_frame *median, double budget
         for (uint32_t k = 0; k < f->largest_count && f->largest[k].bodies > 1; k++) {
             const talus_frame_island *island = &f->largest[k];
             gltf_text_add(out,
-                          "    island of %s: %" PRIu32 " bodies, %" PRIu32 " contacts, %" PRIu32 " joints, %.4f ms\n",
-                          timeline_name(t, island->body.index), island->bodies, island->contacts, island->joints,
-                          (double)island->ticks * 1e-6);
+                          "    island around %s (held by %" PRIu32 "): %" PRIu32 " bodies, %" PRIu32
+                          " contacts, %" PRIu32 " joints, %.4f ms\n",
+                          timeline_name(t, island->body.index), island->held, island->bodies, island->contacts,
+                          island->joints, (double)island->ticks * 1e-6);
         }
     }
     if (over > told) {

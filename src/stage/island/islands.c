@@ -132,7 +132,8 @@ void tl_stage_sleep(tl_header *h, float dt) {
             tl_contacts_refresh(h, b); /* their points were on the body and are in the world from now on */
         }
     }
-    if (any && h->settings.enable_sleep) {
+    h->counters.sleep_searched = any && h->settings.enable_sleep;
+    if (h->counters.sleep_searched) {
         find_islands(h);
         sleep_islands(h, h->settings.sleep_time);
     }

@@ -169,6 +169,8 @@ typedef struct tl_joint_state {
 /* What an island holds, at the row of its root; of all islands at row 0. */
 typedef struct tl_island_tally {
     uint32_t bodies, contacts, joints, rows; /* as in talus_frame_island */
+    uint32_t held;                           /* of the row's body alone: how many contacts and joints hold on to it */
+    uint32_t busiest;                        /* the row of the island in which that is most */
 } tl_island_tally;
 
 #endif
