@@ -49,8 +49,14 @@ page() {
     count "$scene's trace events" $?
     python3 tools/ci/check_profile.py csv "$out.json" "$out.csv"
     count "$scene's rows" $?
-    python3 tools/ci/check_profile.py why "$out.json"
-    count "$scene's worst step is explained by what it held" $?
+}
+
+# explained SCENE: another time if something else may have got into the worst step of all five runs
+explained() {
+    for try in 1 2 3; do
+        "$tool" profile "@$1" --json >"$dir/why.json" && python3 tools/ci/check_profile.py why "$dir/why.json" && return
+    done
+    return 1
 }
 
 # exits WITH NAME OPTION...: an exit status
@@ -67,6 +73,10 @@ exits() {
 
 page pile --steps 300 --budget 1
 page ragdolls --steps 120
+for scene in $("$tool" scene --list | awk '{ print $1 }'); do
+    explained "$scene"
+    count "$scene's worst step is explained by what it held" $?
+done
 exits 0 "within the budget" @stack --steps 20 --budget 1000
 exits 5 "over the budget" @stack --steps 20 --budget 0.000001
 grep -q "go over the budget of 1e-06 ms" "$dir/err"
