@@ -94,8 +94,8 @@ static void says_why(void **state) {
         timeline_explain(&t, &median, worst[i], &text);
         assert_memory_equal(text.data, expected[i], strlen(expected[i]));
         assert_non_null(strstr(text.data,
-                               "the largest of 3 islands, around bob that 9 contacts and joints hold: 20 bodies, "
-                               "60 contacts, 0 joints, 50 % of the step"));
+                               "the largest of 3 islands, around bob (held by 9): 20 bodies, 60 contacts, 0 joints, "
+                               "50 % of the step"));
         gltf_text_free(&text);
     }
     timeline_free(&t);

@@ -195,25 +195,27 @@ static int next_stage(const talus_frame *frame, const talus_frame *median, const
     return best;
 }
 
+static void add_count(gltf_text *out, const char *before, uint32_t count, const char *one, const char *many) {
+    gltf_text_add(out, "%s%" PRIu32 " %s", before, count, count == 1 ? one : many);
+}
+
 static void explain_islands(const timeline *t, const talus_frame *frame, gltf_text *out) {
     const talus_frame_island *island = &frame->largest[0];
     if (frame->counters.islands_woken > 0) {
-        gltf_text_add(out, "; %" PRIu32 " island%s of %" PRIu32 " %s woke", frame->counters.islands_woken,
-                      frame->counters.islands_woken == 1 ? "" : "s", frame->counters.bodies_woken,
-                      frame->counters.bodies_woken == 1 ? "body" : "bodies");
+        add_count(out, "; ", frame->counters.islands_woken, "island", "islands");
+        add_count(out, " of ", frame->counters.bodies_woken, "body woke", "bodies woke");
     }
-    if (frame->largest_count > 0 && frame->time.total > 0) {
-        gltf_text_add(out,
-                      "; the largest of %" PRIu32 " island%s, around %s that %" PRIu32
-                      " contacts and joints hold: %" PRIu32 " bodies, %" PRIu32 " contacts, %" PRIu32
-                      " joints, %.0f %% of the step",
-                      frame->islands, frame->islands == 1 ? "" : "s", timeline_name(t, island->body.index),
-                      island->held, island->bodies, island->contacts, island->joints,
-                      100.0 * (double)island->ticks / (double)frame->time.total);
-        if (frame->islands_age > 0) {
-            gltf_text_add(out, ", as counted %" PRIu32 " step%s before", frame->islands_age,
-                          frame->islands_age == 1 ? "" : "s");
-        }
+    if (frame->largest_count == 0 || frame->time.total == 0) {
+        return;
+    }
+    add_count(out, "; the largest of ", frame->islands, "island", "islands");
+    gltf_text_add(out, ", around %s (held by %" PRIu32 "): ", timeline_name(t, island->body.index), island->held);
+    add_count(out, "", island->bodies, "body", "bodies");
+    add_count(out, ", ", island->contacts, "contact", "contacts");
+    add_count(out, ", ", island->joints, "joint", "joints");
+    gltf_text_add(out, ", %.0f %% of the step", 100.0 * (double)island->ticks / (double)frame->time.total);
+    if (frame->islands_age > 0) {
+        add_count(out, ", as counted ", frame->islands_age, "step before", "steps before");
     }
 }
 
