@@ -88,6 +88,8 @@ exits 1 "no such folder" @stack --steps 5 --csv "$dir/no/where.csv"
 exits 1 "no such profile" --compare "$dir/none.json" "$dir/pile.json"
 exits 4 "not a profile" --compare "$dir/pile.csv" "$dir/pile.json"
 exits 2 "other scenes" --compare "$dir/pile.json" "$dir/ragdolls.json"
+exits 2 "two files on one output" @stack --steps 2 --csv - --json
+exits 2 "a comparison with options" --compare --json "$dir/pile.json" "$dir/pile.json"
 exits 0 "the same profile" --compare "$dir/pile.json" "$dir/pile.json"
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -136,7 +136,7 @@ static const char *const profile_manual[] = {
     "    --html FILE     one page with charts that needs nothing else: open it in a browser\n"
     "    --compare       compare two profiles\n"
     "    --help          this text\n"
-    "    A FILE of - is the standard output.\n"
+    "    A FILE of - is the standard output, which then has nothing else.\n"
     "\n"
     "EXIT STATUS\n"
     "    0  done\n"

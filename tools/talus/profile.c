@@ -114,7 +114,7 @@ static void show(const timeline *t, uint32_t run, uint32_t step, void *context) 
     uint32_t lines = 0;
     timeline_draw(t, run, step, view->budget_ms, &text, &lines);
     wipe(view);
-    fputs(text.data != NULL ? text.data : "", stderr);
+    fprintf(stderr, "\033[?7l%s\033[?7h", text.data != NULL ? text.data : ""); /* lines that are too long are cut */
     fflush(stderr);
     view->lines = text.data != NULL ? lines : 0;
     gltf_text_free(&text);
@@ -134,6 +134,8 @@ static int write_text(const char *path, gltf_text *text) {
     return status;
 }
 
+static int to_output(const char *path) { return path != NULL && strcmp(path, "-") == 0; }
+
 static int write_all(const profile_options *options, const timeline *t) {
     int status = 0;
     gltf_text text = {NULL, 0, 0, 0};
@@ -149,12 +151,11 @@ static int write_all(const profile_options *options, const timeline *t) {
         timeline_html(t, options->budget_ms, &text);
         status = write_text(options->html, &text);
     }
-    if (status == 0) {
-        if (options->json) {
-            timeline_json(t, options->budget_ms, &text);
-        } else {
-            timeline_print(t, options->budget_ms, &text);
-        }
+    if (status == 0 && options->json) {
+        timeline_json(t, options->budget_ms, &text);
+        status = write_text("-", &text);
+    } else if (status == 0 && !to_output(options->csv) && !to_output(options->trace) && !to_output(options->html)) {
+        timeline_print(t, options->budget_ms, &text);
         status = write_text("-", &text);
     }
     return status;
@@ -202,14 +203,19 @@ int tool_profile(int count, char **arguments) {
     options.steps = UINT64_MAX;
     options.runs = RUNS;
     options.build.isa = TALUS_ISA_BEST;
+    int taken = 0;
     for (int option; (option = getopt_long(count, arguments, "", long_options, NULL)) != -1;) {
         int status = option == HELP ? 0 : take_option(option, &options);
+        taken++;
         if (option == HELP) {
             tool_print_manual("profile");
         }
         if (option == HELP || status != 0) {
             return status;
         }
+    }
+    if (options.compare && taken > 1) {
+        return tool_fail(TOOL_USAGE, "profile: --compare takes no other option; see: talus help profile");
     }
     if (options.compare) {
         return optind + 2 == count
@@ -221,5 +227,10 @@ int tool_profile(int count, char **arguments) {
                          optind < count ? "one scene at a time" : "the name of a scene is missing");
     }
     options.scene = arguments[optind];
+    if (options.json + to_output(options.csv) + to_output(options.trace) + to_output(options.html) > 1) {
+        return tool_fail(TOOL_USAGE,
+                         "profile: only one of --json, --csv -, --trace - and --html - can have the standard "
+                         "output");
+    }
     return profile(&options);
 }

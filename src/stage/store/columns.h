@@ -79,6 +79,6 @@
     /* the profiler */                                                                                                 \
     X(row_island, uint32_t, TALLY, COMMIT, STEP, 4)                                                                    \
     X(tallies, tl_island_tally, TALLY, COMMIT, STEP, 4)                                                                \
-    X(ring, talus_frame, FRAME, EVENTS, STEP, 8)
+    X(ring, talus_frame, FRAME, EVENTS, STEP, 4)
 
 #endif
