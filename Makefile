@@ -61,7 +61,7 @@ OBJ := $(SRC:%.c=$(BUILD)/%.o)
 TOOL_MAIN := $(wildcard tools/talus/main.c)
 TOOLS_SRC := $(sort $(filter-out %/main.c,$(wildcard tools/gltf/*.c tools/talus/*.c platform/host/*.c)))
 TOOLS_LIB = $(BUILD)/libtools.a
-TOOLS_OBJ := $(TOOLS_SRC:%.c=$(BUILD)/%.o)
+TOOLS_OBJ := $(TOOLS_SRC:%.c=$(BUILD)/%.o) $(BUILD)/tools/talus/profile_page.o
 
 # tests/*/NAME_test.c is a program each; what else lies there, but for fuzzers and *_main.c, is linked to all of them.
 TEST_SRC := $(sort $(wildcard tests/*/*_test.c))
@@ -80,7 +80,7 @@ TEST_LINK = $(if $(HELP_CXX),$(CXX),$(CC))
 
 HAS_CJSON := $(shell printf '\#include <cjson/cJSON.h>\n' | $(CC) $(CFLAGS) -E - >/dev/null 2>&1 && echo yes)
 
-.PHONY: all lib tool run test bench sanitize fuzz golden golden-update lint format install deps deps-full ci clean help FORCE
+.PHONY: all lib tool run test bench profile-cost sanitize fuzz golden golden-update lint format install deps deps-full ci clean help FORCE
 .DELETE_ON_ERROR:
 
 all: lib $(if $(HAS_CJSON),tool,no-tool)
@@ -99,6 +99,7 @@ help:
 	@echo "make golden-update  takes this build's hashes as the golden ones"
 	@echo "make fuzz           every fuzzer for FUZZ_TIME=$(FUZZ_TIME) seconds"
 	@echo "make bench          own scenes and where their time goes"
+	@echo "make profile-cost   what the profiler costs when it is on"
 	@echo "make lint           symbols, includes, headers, format"
 	@echo "make format         clang-format over the tree"
 	@echo "make install        headers, library, tool, package files to PREFIX=$(PREFIX) (DESTDIR is put before it)"
@@ -121,6 +122,16 @@ $(BUILD)/%_avx2.o: %_avx2.c $(BUILD)/flags
 
 $(BUILD)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
+	@echo "  CC $<"
+	$(Q)$(CC) $(C_FLAGS) $(INCLUDES) $(DEPENDS) -c $< -o $@
+
+# The page as bytes: a string of its length is more than C99 promises to take.
+$(BUILD)/tools/talus/profile_page.c: tools/talus/profile_page.html
+	@mkdir -p $(@D)
+	@{ echo '#include "talus/profile_page.h"'; echo 'const unsigned char profile_page[] = {'; \
+	    od -An -v -tx1 $< | sed 's/ *\([0-9a-f][0-9a-f]\)/0x\1,/g'; echo '0};'; } > $@
+
+$(BUILD)/%.o: $(BUILD)/%.c $(BUILD)/flags
 	@echo "  CC $<"
 	$(Q)$(CC) $(C_FLAGS) $(INCLUDES) $(DEPENDS) -c $< -o $@
 
@@ -202,6 +213,13 @@ run: tool
 
 bench: tool
 	@sh tools/ci/bench.sh $(TOOL)
+
+COST = $(BUILD)/tools/bench/profile_cost$(EXE)
+$(COST): $(BUILD)/tools/bench/profile_cost.o $(TOOLS_LIB) $(LIB)
+	@echo "  LD $@"
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $^ -lm -o $@
+profile-cost: $(COST)
+	$(RUN) $(COST)
 
 lint: lib
 	@sh tools/ci/check-symbols.sh $(LIB)

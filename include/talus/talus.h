@@ -8,6 +8,7 @@
 #include "talus/joint.h"
 #include "talus/loop.h"
 #include "talus/rollback.h"
+#include "talus/profile.h"
 #include "talus/shape.h"
 #include "talus/snapshot.h"
 #include "talus/types.h"

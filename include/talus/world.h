@@ -40,6 +40,7 @@ typedef struct talus_world_def {
     uint32_t joint_capacity;
     uint32_t contact_capacity; /* pairs of shapes that touch; three times as many more may be near */
     uint32_t event_capacity;   /* of each kind of event, a step */
+    uint32_t profile_capacity; /* frames that the profiler keeps, talus/profile.h; 0, the default: none */
     /* simulation */
     talus_vec3 gravity;          /* m/s^2 */
     uint32_t substeps;           /* 1..TALUS_MAX_SUBSTEPS */
@@ -112,8 +113,9 @@ typedef struct talus_profile {
     uint64_t total;
 } talus_profile;
 
-/* One step of dt seconds (0 < dt <= 1). `clock` and `profile` may be null: then no time is taken.
- * TALUS_BAD_ARGUMENT, TALUS_NOT_FINITE. What did not fit a capacity is dropped, counted and reported in the counters.
+/* One step of dt seconds (0 < dt <= 1). `clock` may be null: then no time is taken. `profile` may be null: the times
+ * then go to the ring of talus/profile.h alone, if the world has one. TALUS_BAD_ARGUMENT, TALUS_NOT_FINITE. What did
+ * not fit a capacity is dropped, counted and reported in the counters.
  */
 talus_status talus_world_step(talus_world *world, float dt, const talus_clock *clock, talus_profile *profile);
 
@@ -131,15 +133,21 @@ typedef struct talus_counters {
     uint32_t proxies_refit;   /* boxes that had left their fat boxes */
     uint32_t pairs_made, pairs_ended;
     uint32_t manifolds_made;    /* computed in the last step */
+    uint32_t manifolds_first;   /* of them, without features to start from: the pair is new */
     uint32_t manifolds_kept;    /* kept, for the pair had not moved enough */
     uint32_t contacts_sleeping; /* not looked at */
     uint32_t contacts_touching; /* with rows in the solver */
     uint32_t contact_points;
+    uint32_t touches_begun, touches_ended;
     uint32_t joints_solved, joints_sleeping;
     uint32_t islands, islands_slept, islands_woken;
+    uint32_t bodies_slept, bodies_woken; /* with those islands */
+    uint32_t sleep_searched;             /* 1: bodies were slow for long enough to look for islands that may sleep */
     uint32_t colors;
     uint32_t lane_groups;         /* groups of eight in the solver */
     uint32_t lanes_used;          /* lanes that held a constraint */
+    uint32_t groups_pushed;       /* that hold a point deep enough to be pushed out */
+    uint32_t groups_bouncing;     /* that hold a contact with restitution */
     uint32_t restitution_skipped; /* 1: nothing bounced, the stage did not run */
     uint32_t joints_skipped;
     uint32_t rolling_skipped;

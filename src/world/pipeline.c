@@ -3,37 +3,7 @@
 #include "stage/island/islands.h"
 #include "stage/stages.h"
 #include "talus/world.h"
-
-/* A stopwatch on the caller's clock; does nothing without one. */
-typedef struct watch {
-    const talus_clock *clock;
-    talus_profile *profile;
-    uint64_t last;
-} watch;
-
-static void watch_lap(watch *w, talus_stage stage) {
-    if (w->clock) {
-        uint64_t now = w->clock->now(w->clock->context);
-        w->profile->stage[stage] += now - w->last;
-        w->profile->total += now - w->last;
-        w->last = now;
-    }
-}
-
-static void watch_start(watch *w, const talus_clock *clock, talus_profile *profile) {
-    w->clock = clock && clock->now && profile ? clock : NULL;
-    w->profile = profile;
-    w->last = 0;
-    if (profile) {
-        for (int i = 0; i < TALUS_STAGE_COUNT; i++) {
-            profile->stage[i] = 0;
-        }
-        profile->total = 0;
-    }
-    if (w->clock) {
-        w->last = clock->now(clock->context);
-    }
-}
+#include "world/watch.h"
 
 /* A contact in overlap is a damped spring of the set frequency, no stiffer than what the sub-steps can follow. */
 #define MOST_HERTZ_OF_SUBSTEPS 0.21f
@@ -61,14 +31,14 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     h->settings.substep = step->sub;
     set_softness(step);
     tl_events_begin(h);
-    h->counters.islands_slept = h->counters.islands_woken = 0;
+    h->counters.islands_slept = h->counters.islands_woken = h->counters.bodies_slept = h->counters.bodies_woken = 0;
 }
 
-static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w) {
+static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch *w) {
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
     k->velocity(step, 0, step->rows);
-    watch_lap(w, TALUS_STAGE_VELOCITY);
+    tl_watch_lap(w, TALUS_STAGE_VELOCITY);
     if (first) {
         k->begin_joints(step, 0, joints);
         k->warm_contacts(step, 0, contacts);
@@ -82,9 +52,9 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     if (step->any_locks) {
         tl_stage_locks(step);
     }
-    watch_lap(w, TALUS_STAGE_SOLVE);
+    tl_watch_lap(w, TALUS_STAGE_SOLVE);
     k->position(step, 0, step->rows);
-    watch_lap(w, TALUS_STAGE_POSITION);
+    tl_watch_lap(w, TALUS_STAGE_POSITION);
     k->turn_joints(step, 0, joints);
     if (step->pushes) {
         k->push_joints(step, 0, joints);
@@ -98,24 +68,27 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, watch *w)
     if (step->any_locks) {
         tl_stage_locks(step);
     }
-    watch_lap(w, TALUS_STAGE_RELAX);
+    tl_watch_lap(w, TALUS_STAGE_RELAX);
 }
 
-static void solve(tl_step *step, watch *w) {
+static void solve(tl_step *step, tl_watch *w) {
     tl_header *h = step->h;
     const tl_kernels *k = tl_kernels_of((talus_isa)h->isa);
     tl_stage_body_rows(step);
     tl_stage_contact_groups(step);
     tl_stage_joint_groups(step);
     k->prepare_contacts(step, 0, h->groups);
-    uint32_t bouncing = 0, rolling = 0;
+    uint32_t bouncing = 0, rolling = 0, pushed = 0;
     step->pushes = h->joint_groups > 0;
     for (uint32_t i = 0; i < h->groups; i++) {
-        bouncing |= tl_group_pool(h)[i].bounces;
+        bouncing += tl_group_pool(h)[i].bounces != 0;
         rolling |= tl_group_pool(h)[i].rolls;
-        step->pushes |= tl_group_pool(h)[i].deep != 0;
+        pushed += tl_group_pool(h)[i].deep != 0;
     }
-    watch_lap(w, TALUS_STAGE_ROWS);
+    step->pushes |= pushed > 0;
+    h->counters.groups_pushed = pushed;
+    h->counters.groups_bouncing = bouncing;
+    tl_watch_lap(w, TALUS_STAGE_ROWS);
     for (uint32_t i = 0; i < h->settings.substeps; i++) {
         run_substep(step, k, i == 0, w);
     }
@@ -124,7 +97,7 @@ static void solve(tl_step *step, watch *w) {
     }
     h->counters.restitution_skipped = !bouncing;
     h->counters.rolling_skipped = !rolling;
-    watch_lap(w, TALUS_STAGE_RESTITUTION);
+    tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
     k->store_contacts(step, 0, h->groups);
     k->store_joints(step, 0, h->joint_groups);
 }
@@ -139,30 +112,32 @@ talus_status talus_world_step(talus_world *world, float dt, const talus_clock *c
     if (!(dt > 0.0f && dt <= 1.0f)) {
         return TALUS_BAD_ARGUMENT;
     }
-    watch w;
+    tl_watch w;
     tl_step step;
-    watch_start(&w, clock, profile);
+    tl_watch_start(&w, tl_header_of(world), clock, profile);
     begin_step(&step, world, dt);
     tl_header *h = step.h;
-    watch_lap(&w, TALUS_STAGE_COMMANDS);
+    tl_watch_lap(&w, TALUS_STAGE_COMMANDS);
     tl_stage_refit(h, step.geometry, dt);
-    watch_lap(&w, TALUS_STAGE_REFIT);
+    tl_watch_lap(&w, TALUS_STAGE_REFIT);
     tl_stage_pairs(h);
-    watch_lap(&w, TALUS_STAGE_PAIRS);
+    tl_watch_lap(&w, TALUS_STAGE_PAIRS);
     tl_stage_narrow(&step);
-    watch_lap(&w, TALUS_STAGE_NARROW);
+    tl_watch_lap(&w, TALUS_STAGE_NARROW);
     solve(&step, &w);
     tl_stage_commit(&step);
-    watch_lap(&w, TALUS_STAGE_COMMIT);
+    tl_watch_lap(&w, TALUS_STAGE_COMMIT);
+    tl_watch_islands(&w, &step);
     tl_stage_events(&step);
-    watch_lap(&w, TALUS_STAGE_EVENTS);
+    tl_watch_lap(&w, TALUS_STAGE_EVENTS);
     tl_stage_sleep(h, dt);
-    watch_lap(&w, TALUS_STAGE_SLEEP);
+    tl_watch_lap(&w, TALUS_STAGE_SLEEP);
     h->counters.awake_bodies = h->awake_bodies;
     h->counters.sleeping_bodies = h->bodies.used - 1u - h->awake_bodies;
     h->counters.joints_skipped = h->joint_groups == 0;
     if (++h->steps_low == 0) {
         h->steps_high++;
     }
+    tl_watch_stop(&w, world, profile);
     return TALUS_OK;
 }

@@ -294,6 +294,7 @@ talus_status tl_reindex_end(tl_header *h, const tl_header *before) {
     if (h->pairs.used > TL_APART_PER_CONTACT * h->capacity[TL_COUNT_CONTACT]) {
         drop_pairs(h); /* not to leave the contacts without room */
     }
+    tl_ties_changed(h);
     if (!are_as_awake(h, before->bodies.high)) {
         renew_awake(h);
     }

@@ -40,7 +40,8 @@ static int header_is_sound(const tl_header *h) {
            pool_is_sound(&h->pairs, capacity[TL_COUNT_PAIR]) && pool_is_sound(&h->joints, capacity[TL_COUNT_JOINT]) &&
            h->contacts.used <= h->contacts.high && h->contacts.high <= capacity[TL_COUNT_CONTACT] &&
            h->pairs.used >= h->contacts.used && h->awake_bodies < capacity[TL_COUNT_BODY] &&
-           h->awake_pairs <= h->pairs.used && h->moved_shapes <= h->shapes.used;
+           h->awake_pairs <= h->pairs.used && h->moved_shapes <= h->shapes.used &&
+           h->frames <= capacity[TL_COUNT_FRAME] && (h->next_frame < capacity[TL_COUNT_FRAME] || h->next_frame == 0);
 }
 
 /* --- bodies and shapes ------------------------------------------------------------------------ */

@@ -70,7 +70,8 @@ static int in_range(float x, float low, float high) { return x >= low && x <= hi
 
 static talus_status check_def(const talus_world_def *d) {
     if (!d || !capacity_fits(d->body_capacity) || !capacity_fits(d->shape_capacity) ||
-        !capacity_fits(d->joint_capacity) || !capacity_fits(d->contact_capacity) || !capacity_fits(d->event_capacity)) {
+        !capacity_fits(d->joint_capacity) || !capacity_fits(d->contact_capacity) || !capacity_fits(d->event_capacity) ||
+        d->profile_capacity > TALUS_MAX_CAPACITY) {
         return TALUS_BAD_ARGUMENT;
     }
     const float numbers[] = {d->contact_hertz, d->contact_damping_ratio,
@@ -204,6 +205,7 @@ talus_status talus_world_get_def(const talus_world *world, talus_world_def *out)
     out->joint_capacity = h->capacity[TL_COUNT_JOINT];
     out->contact_capacity = h->capacity[TL_COUNT_CONTACT];
     out->event_capacity = h->capacity[TL_COUNT_EVENT];
+    out->profile_capacity = h->capacity[TL_COUNT_FRAME];
     out->gravity = s->gravity;
     out->substeps = s->substeps, out->iterations = s->iterations;
     out->contact_hertz = s->contact_hertz, out->contact_damping_ratio = s->contact_damping_ratio;

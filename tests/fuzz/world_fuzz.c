@@ -306,6 +306,7 @@ static uint64_t run(const uint8_t *data, size_t size, talus_isa isa) {
     def.body_capacity = 1u + settings % 12u, def.shape_capacity = 1u + settings % 16u;
     def.joint_capacity = 1u + settings % 8u, def.contact_capacity = 1u + settings % 32u;
     def.event_capacity = 1u + settings % 5u;
+    def.profile_capacity = settings % 3u;
     def.substeps = 1u + settings % 4u;
     def.isa = isa;
     size_t bytes = talus_world_size(&def);

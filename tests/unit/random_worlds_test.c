@@ -350,6 +350,7 @@ static uint64_t run(uint64_t seed, talus_isa isa, talus_isa other) {
     def.joint_capacity = tight ? 1u + below(6) : 32;
     def.contact_capacity = tight ? 1u + below(40) : 2048;
     def.event_capacity = tight ? 1u + below(8) : 256;
+    def.profile_capacity = isa == TALUS_ISA_SCALAR ? 0u : 3u; /* the state knows nothing of it */
     def.substeps = 1u + below(8);
     def.iterations = 1u + below(3);
     def.recycle_slack = below(3) ? def.recycle_slack : 0.0f;

@@ -128,6 +128,7 @@ static talus_world_def size_world(const gltf_scene *scene, const gltf_build_opti
     def.substeps = options->substeps > 0 ? options->substeps : def.substeps;
     def.iterations = options->iterations > 0 ? options->iterations : def.iterations;
     def.enable_sleep = options->no_sleep ? 0 : def.enable_sleep;
+    def.profile_capacity = options->profile_capacity;
     def.isa = options->isa;
     return def;
 }

@@ -9,6 +9,7 @@ typedef struct gltf_build_options {
     uint32_t substeps, iterations; /* 0: the library's default */
     talus_isa isa;
     int no_sleep;
+    uint32_t profile_capacity; /* frames of the profiler's ring */
 } gltf_build_options;
 
 /* A world with the memory it lives in. */

@@ -10,6 +10,8 @@ static const char *const talus_page[] = {
     "\n"
     "SYNOPSIS\n"
     "    talus run SCENE [OPTION]...\n"
+    "    talus profile SCENE [OPTION]...\n"
+    "    talus profile --compare A.json B.json\n"
     "    talus scene NAME [-o FILE.gltf]\n"
     "    talus scene --list\n"
     "    talus help [SUBCOMMAND]\n"
@@ -17,6 +19,7 @@ static const char *const talus_page[] = {
     "\n"
     "DESCRIPTION\n"
     "    run      runs a scene and says how long steps took, what memory they used and which bits came out\n"
+    "    profile  says which steps of a scene take long and why, or whether one profile is slower than another\n"
     "    scene    writes one of the tool's own scenes as glTF\n"
     "    help     this text, or that of a subcommand\n"
     "    version  the version of the tool and the library\n"
@@ -27,6 +30,7 @@ static const char *const talus_page[] = {
     "    2  the command line is wrong\n"
     "    3  the scene, or an option, asks for what is not supported\n"
     "    4  the scene's file is broken\n"
+    "    5  it was done and took longer than asked for (talus profile)\n"
     "\n"
     "EXAMPLES\n"
     "    talus run @showcase --animate showcase.glb\n"
@@ -92,6 +96,65 @@ static const char *const run_page[] = {
     "    talus help scene\n",
     NULL};
 
+static const char *const profile_manual[] = {
+    "NAME\n"
+    "    talus profile - says which steps of a scene take long, and why\n"
+    "\n"
+    "SYNOPSIS\n"
+    "    talus profile SCENE [--steps N] [--runs N] [--substeps N] [--isa SET] [--no-sleep] [--budget MS]\n"
+    "                  [--json] [--csv FILE] [--trace FILE] [--html FILE]\n"
+    "    talus profile --compare A.json B.json\n"
+    "\n"
+    "DESCRIPTION\n"
+    "    Runs SCENE (as in talus help run) several times from its beginning. The runs are the same to the bit,\n"
+    "    which is checked, so what differs in time is the machine: of each step, and of each stage of it, the least\n"
+    "    time over the runs is taken. The stages of a step may thus add up to less than the step.\n"
+    "\n"
+    "    On a terminal the bars of the stages are drawn while it runs. Then: the stages with mean, p50, p95, p99,\n"
+    "    p99.9 and max, and the worst steps, each with what it held that the median step did not.\n"
+    "\n"
+    "    Times of an island are a share: islands are solved side by side in lanes. See include/talus/profile.h.\n"
+    "\n"
+    "    --compare takes two outputs of --json, of the same scene and steps. Whether B differs is asked of the runs,\n"
+    "    for a machine's moods outlast a step: Wilcoxon's rank-sum test at 5 %, of one number a run, the median\n"
+    "    over its steps, weighted by their times. How much is asked of the least times of the steps: the weighted\n"
+    "    median of their ratios, with an interval that holds 95 % of a bootstrap over runs and blocks of steps. B is\n"
+    "    called slower, or faster, where both say so. With fewer than 4 runs of each nothing is said. A machine\n"
+    "    that was slow for all the while that B took looks like a slower B: where that may be, make the profiles\n"
+    "    by turns, and more than once.\n"
+    "\n"
+    "OPTIONS\n"
+    "    --steps N       run N steps, to 1000000 (default: the scene's)\n"
+    "    --runs N        times, 1 to 1000 (default: 5)\n"
+    "    --substeps N    solve each step in N sub-steps, 1 to 64 (default: the library's)\n"
+    "    --isa SET       scalar, sse2, avx2, neon, wasm or best (default: best)\n"
+    "    --no-sleep      bodies at rest are not put to sleep\n"
+    "    --budget MS     fail where a step takes longer, and tell which did and what they held\n"
+    "    --json          print one line of JSON instead of the tables: all figures, frames and runs\n"
+    "    --csv FILE      a row a step: times (ns) and counts\n"
+    "    --trace FILE    trace events for Perfetto or chrome://tracing; steps stand one after the other\n"
+    "    --html FILE     one page with charts that needs nothing else: open it in a browser\n"
+    "    --compare       compare two profiles\n"
+    "    --help          this text\n"
+    "    A FILE of - is the standard output, which then has nothing else.\n"
+    "\n"
+    "EXIT STATUS\n"
+    "    0  done\n"
+    "    1  it failed: a file could not be read or written, memory ran out, or the runs differed\n"
+    "    2  the command line is wrong, or two profiles are not of the same scene and steps\n"
+    "    3  the scene, or an option, asks for what is not supported\n"
+    "    4  the scene's file, or a profile, is broken\n"
+    "    5  a step went over the budget; with --compare: B is slower\n"
+    "\n"
+    "EXAMPLES\n"
+    "    talus profile @pile --budget 2 --html pile.html\n"
+    "    talus profile @pile --json > before.json\n"
+    "    talus profile --compare before.json after.json\n"
+    "\n"
+    "SEE ALSO\n"
+    "    talus help run\n",
+    NULL};
+
 static const char *const scene_page[] = {
     "NAME\n"
     "    talus scene - writes one of the tool's own scenes as glTF\n"
@@ -117,10 +180,11 @@ static const char *const scene_page[] = {
     NULL};
 
 int tool_print_manual(const char *subcommand) {
-    const char *const *page = subcommand == NULL                 ? talus_page
-                              : strcmp(subcommand, "run") == 0   ? run_page
-                              : strcmp(subcommand, "scene") == 0 ? scene_page
-                                                                 : NULL;
+    const char *const *page = subcommand == NULL                   ? talus_page
+                              : strcmp(subcommand, "run") == 0     ? run_page
+                              : strcmp(subcommand, "profile") == 0 ? profile_manual
+                              : strcmp(subcommand, "scene") == 0   ? scene_page
+                                                                   : NULL;
     for (int i = 0; page != NULL && page[i] != NULL; i++) {
         fputs(page[i], stdout);
     }

@@ -84,8 +84,8 @@ void report_for_people(const run_options *options, const gltf_scene *scene, cons
     printf("%" PRIu32 " steps of %g s, %" PRIu32 " sub-steps, %" PRIu32 " iterations, sleep %s, %s\n", r->steps,
            (double)r->dt, r->substeps, r->iterations, options->build.no_sleep ? "off" : "on",
            talus_isa_name((talus_isa)r->isa));
-    printf("\nstep time, ms: mean %.4f   p50 %.4f   p99 %.4f   p99.9 %.4f   max %.4f\n", r->mean, r->p50, r->p99,
-           r->p999, r->max);
+    printf("\nstep time, ms: mean %.4f   p50 %.4f   p99 %.4f   p99.9 %.4f   max %.4f\n", r->ms.mean, r->ms.p50,
+           r->ms.p99, r->ms.p999, r->ms.max);
     if (r->has_stages) {
         print_stages(r);
     }
@@ -177,11 +177,11 @@ void report_json(const run_options *options, const gltf_scene *scene, const gltf
     add_count(&out, "iterations", r->iterations);
     gltf_text_add(&out, ",\"sleep\":%s,\"isa\":\"%s\"", options->build.no_sleep ? "false" : "true",
                   talus_isa_name((talus_isa)r->isa));
-    add_number(&out, "ms_per_step_mean", r->mean);
-    add_number(&out, "ms_per_step_p50", r->p50);
-    add_number(&out, "ms_per_step_p99", r->p99);
-    add_number(&out, "ms_per_step_p999", r->p999);
-    add_number(&out, "ms_per_step_max", r->max);
+    add_number(&out, "ms_per_step_mean", r->ms.mean);
+    add_number(&out, "ms_per_step_p50", r->ms.p50);
+    add_number(&out, "ms_per_step_p99", r->ms.p99);
+    add_number(&out, "ms_per_step_p999", r->ms.p999);
+    add_number(&out, "ms_per_step_max", r->ms.max);
     add_number(&out, "overlap_m", (double)r->worst.overlap);
     add_number(&out, "joint_separation_m", (double)r->worst.joint_linear);
     add_number(&out, "joint_angle_rad", (double)r->worst.joint_angular);

@@ -4,7 +4,7 @@
 #include "gltf/animate.h"
 #include "host/clock.h"
 #include "host/file.h"
-#include "scenes.h"
+#include "input.h"
 #include "tool.h"
 #include "trajectory.h"
 
@@ -17,49 +17,8 @@
 #include <unistd.h>
 
 #define FRAMES_PER_SECOND 30.0 /* of an animation */
-#define MAX_STEPS 10000000u
 
 /* --- options --- */
-
-/* A whole number in [low, high] out of an option; an error otherwise. */
-static int whole(const char *option, const char *text, uint64_t low, uint64_t high, uint64_t *out) {
-    char *end = NULL;
-    errno = 0;
-    unsigned long long value = strtoull(text, &end, 10);
-    if (errno != 0 || end == text || *end != 0 || text[0] == '-' || value < low || value > high) {
-        tool_fail(TOOL_USAGE, "%s: \"%s\" is not a whole number from %llu to %llu", option, text,
-                  (unsigned long long)low, (unsigned long long)high);
-        return 0;
-    }
-    *out = value;
-    return 1;
-}
-
-static int seconds(const char *option, const char *text, double *out) {
-    char *end = NULL;
-    *out = strtod(text, &end);
-    if (end == text || *end != 0 || !(*out >= 1e-6 && *out <= 1)) {
-        tool_fail(TOOL_USAGE, "%s: \"%s\" is not a number of seconds from 1e-6 to 1", option, text);
-        return 0;
-    }
-    return 1;
-}
-
-static int instruction_set(const char *text, talus_isa *out) {
-    char names[160] = "";
-    for (int i = 0; i < TALUS_ISA_COUNT; i++) {
-        const char *name = talus_isa_name((talus_isa)i);
-        if (strcmp(text, name) == 0) {
-            *out = (talus_isa)i;
-            if (i == TALUS_ISA_BEST || talus_isa_available(*out)) {
-                return 0;
-            }
-            return tool_fail(GLTF_UNSUPPORTED, "--isa: \"%s\" is not in this build or on this processor", text);
-        }
-        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i == 0 ? "" : ", ", name);
-    }
-    return tool_fail(TOOL_USAGE, "--isa: \"%s\" is none of %s", text, names);
-}
 
 enum { OUT = 1, STEPS, DT, SUBSTEPS, ITERATIONS, ISA, THREADS, NO_SLEEP, JSON, PROFILE, ANIMATE, QUIET, HELP };
 
@@ -89,28 +48,28 @@ static int take_option(int option, run_options *out) {
         out->animate = optarg;
         return 0;
     case STEPS:
-        return whole("--steps", optarg, 0, MAX_STEPS, &out->steps) ? 0 : TOOL_USAGE;
+        return input_whole("--steps", optarg, 0, INPUT_MAX_STEPS, &out->steps) ? 0 : TOOL_USAGE;
     case DT:
-        return seconds("--dt", optarg, &out->dt) ? 0 : TOOL_USAGE;
+        return input_number("--dt", optarg, "seconds", 1e-6, 1, &out->dt) ? 0 : TOOL_USAGE;
     case SUBSTEPS:
-        if (!whole("--substeps", optarg, 1, TALUS_MAX_SUBSTEPS, &number)) {
+        if (!input_whole("--substeps", optarg, 1, TALUS_MAX_SUBSTEPS, &number)) {
             return TOOL_USAGE;
         }
         out->build.substeps = (uint32_t)number;
         return 0;
     case ITERATIONS:
-        if (!whole("--iterations", optarg, 1, TALUS_MAX_ITERATIONS, &number)) {
+        if (!input_whole("--iterations", optarg, 1, TALUS_MAX_ITERATIONS, &number)) {
             return TOOL_USAGE;
         }
         out->build.iterations = (uint32_t)number;
         return 0;
     case THREADS:
-        if (!whole("--threads", optarg, 1, 1024, &number)) {
+        if (!input_whole("--threads", optarg, 1, 1024, &number)) {
             return TOOL_USAGE;
         }
         return number == 1 ? 0 : tool_fail(GLTF_UNSUPPORTED, "--threads: a step runs on one thread");
     case ISA:
-        return instruction_set(optarg, &out->build.isa);
+        return input_isa(optarg, &out->build.isa);
     case NO_SLEEP:
         out->build.no_sleep = 1;
         return 0;
@@ -125,36 +84,6 @@ static int take_option(int option, run_options *out) {
         return 0;
     default:
         return tool_fail(TOOL_USAGE, "see: talus help run");
-    }
-}
-
-/* --- loading --- */
-
-static int load(const run_options *options, gltf_scene *scene) {
-    gltf_error error;
-    if (options->scene[0] != '@') {
-        gltf_scene_load_file(scene, options->scene, &error);
-    } else {
-        size_t size = 0;
-        int known = 0;
-        char *text = scenes_make(options->scene + 1, &size, &known);
-        if (text == NULL) {
-            return known ? tool_fail(GLTF_FAILED, "there is no memory for the scene")
-                         : tool_fail(TOOL_USAGE, "there is no scene \"%s\"; try: talus scene --list", options->scene);
-        }
-        gltf_scene_load(scene, text, size, NULL, &error);
-        free(text);
-    }
-    return error.status == GLTF_OK ? 0 : tool_fail((int)error.status, "%s: %s", options->scene, error.text);
-}
-
-/* The file's name without its folder and ending. */
-static void name_scene(const char *path, char *out, size_t size) {
-    const char *slash = strrchr(path, '/');
-    snprintf(out, size, "%s", slash != NULL ? slash + 1 : path[0] == '@' ? path + 1 : path);
-    char *dot = strrchr(out, '.');
-    if (dot != NULL && dot != out) {
-        *dot = 0;
     }
 }
 
@@ -290,29 +219,6 @@ static int run_steps(runner *r) {
     return 0;
 }
 
-static int compare_numbers(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
-static double part(const run_result *r, double share) {
-    uint32_t i = (uint32_t)(r->steps * share);
-    return r->steps == 0 ? 0 : r->step_ms[i < r->steps ? i : r->steps - 1];
-}
-
-static void sum_up(run_result *out) {
-    double sum = 0;
-    for (uint32_t i = 0; i < out->steps; i++) {
-        sum += out->step_ms[i];
-    }
-    qsort(out->step_ms, out->steps, sizeof *out->step_ms, compare_numbers);
-    out->mean = out->steps > 0 ? sum / out->steps : 0;
-    out->p50 = part(out, 0.5);
-    out->p99 = part(out, 0.99);
-    out->p999 = part(out, 0.999);
-    out->max = part(out, 1);
-}
-
 static int write_animation(const runner *r) {
     gltf_text bytes = {NULL, 0, 0, 0};
     gltf_error error;
@@ -372,7 +278,7 @@ static int run_scene(const run_options *options, const gltf_scene *scene) {
     talus_world_def def;
     memset(&def, 0, sizeof def);
     talus_world_get_def(&world.world, &def);
-    name_scene(options->scene, result.name, sizeof result.name);
+    input_name(options->scene, result.name, sizeof result.name);
     result.dt = options->dt > 0 ? (float)options->dt : scene->dt;
     result.steps = options->steps == UINT64_MAX ? scene->steps : (uint32_t)options->steps;
     result.substeps = def.substeps;
@@ -380,7 +286,7 @@ static int run_scene(const run_options *options, const gltf_scene *scene) {
     result.isa = (uint32_t)talus_world_get_isa(&world.world);
     int status = run_world(options, scene, &world, &result);
     if (status == 0) {
-        sum_up(&result);
+        result.ms = figures_of(result.step_ms, result.steps);
         if (options->json) {
             report_json(options, scene, &world, &result);
         } else if (!options->quiet) {
@@ -414,7 +320,7 @@ int tool_run(int count, char **arguments) {
     }
     options.scene = arguments[optind];
     gltf_scene scene;
-    int status = load(&options, &scene);
+    int status = input_scene(options.scene, &scene);
     if (status == 0) {
         status = run_scene(&options, &scene);
         gltf_scene_free(&scene);

@@ -2,6 +2,7 @@
 #ifndef TALUS_TOOL_RUN_H
 #define TALUS_TOOL_RUN_H
 
+#include "figures.h"
 #include "gltf/build.h"
 #include "gltf/scene.h"
 
@@ -20,7 +21,7 @@ typedef struct run_result {
     float dt;
     uint32_t steps;
     double *step_ms; /* of each step; sorted once it is summed up */
-    double mean, p50, p99, p999, max;
+    figures ms;
     int has_stages;
     uint64_t stage_ns[TALUS_STAGE_COUNT];
     uint64_t state_hash, world_hash;

@@ -90,6 +90,7 @@ static void sleep_islands(tl_header *h, float time) {
         tl_shapes_settle(h, b);
         slept++;
     }
+    h->counters.bodies_slept += slept;
     if (slept) {
         tl_lists_drop_sleeping(h);
     }
@@ -129,7 +130,8 @@ void tl_stage_sleep(tl_header *h, float dt) {
             tl_contacts_refresh(h, b); /* their points were on the body and are in the world from now on */
         }
     }
-    if (any && h->settings.enable_sleep) {
+    h->counters.sleep_searched = any && h->settings.enable_sleep;
+    if (h->counters.sleep_searched) {
         tl_lists_of_awake(h);
         find_islands(h);
         sleep_islands(h, h->settings.sleep_time);

@@ -129,6 +129,7 @@ static uint32_t clear_of(const tl_header *h, uint32_t body_a, uint32_t body_b, f
 static void end_touch(tl_header *h, uint32_t c, float gap) {
     const tl_contact_meta *meta = &tl_contacts(h)[c];
     uint32_t clear = clear_of(h, meta->body_a, meta->body_b, gap);
+    h->counters.touches_ended++;
     tl_event_contact_end(h, c);
     tl_contact_end(h, c, clear);
 }
@@ -198,6 +199,8 @@ static int touches(tl_step *step, uint32_t shape_a, uint32_t shape_b, tl_pair_ca
         if (m.count == 0) {
             return 0;
         }
+    } else {
+        h->counters.manifolds_first++;
     }
     tl_collide(&q.a, &q.b, &q.b_in_a, q.margin, &cold, &m);
     *hint = cold;
@@ -290,6 +293,7 @@ static void begin_touch(tl_step *step, uint32_t shape_a, uint32_t shape_b) {
     uint32_t c = tl_contact_make(h, shape_a, shape_b);
     tl_contact_meta *meta = &tl_contacts(h)[c];
     make_manifold(step, c);
+    h->counters.touches_begun++;
     if (!(meta->flags & TL_CONTACT_SENSOR)) {
         meta->flags |= TL_CONTACT_COLORED;
         meta->color = tl_color_take(h, meta->body_a, meta->body_b);
@@ -301,7 +305,8 @@ static void begin_touch(tl_step *step, uint32_t shape_a, uint32_t shape_b) {
 void tl_stage_narrow(tl_step *step) {
     tl_header *h = step->h;
     talus_counters *n = &h->counters;
-    n->manifolds_made = n->manifolds_kept = n->pairs_ended = n->contacts_touching = n->contact_points = 0;
+    n->manifolds_made = n->manifolds_first = n->manifolds_kept = n->pairs_ended = 0;
+    n->contacts_touching = n->contact_points = n->touches_begun = n->touches_ended = 0;
     measure_ways(step);
     update_contacts(step);
     new_touches found = {0, h->capacity[TL_COUNT_CONTACT] - h->contacts.used, 0};

@@ -2,7 +2,7 @@
  *
  * X(name, type, count, stage, life, word): `count` names a capacity, `stage` the one stage that writes the column
  * during a step, `life` whether it is part of the state (STATE: hashed, compared, saved), an index that makes steps
- * fast and never shows in the state's bits (INDEX: trees, pairs, lists) or lives for one step (STEP), `word` the bytes
+ * fast and never shows in the state's bits (INDEX: trees, pairs, lists) or is what steps leave behind (STEP), `word` the bytes
  * of its members, which are all of one size so that the hash does not depend on the byte order. */
 #ifndef TL_COLUMNS_H
 #define TL_COLUMNS_H
@@ -86,6 +86,10 @@
     X(event_hit, talus_hit_event, EVENT, EVENTS, STEP, 4)                                                              \
     X(event_sensor_begin, talus_sensor_event, EVENT, EVENTS, STEP, 4)                                                  \
     X(event_sensor_end, talus_sensor_event, EVENT, EVENTS, STEP, 4)                                                    \
-    X(event_broken, talus_joint_event, EVENT, EVENTS, STEP, 4)
+    X(event_broken, talus_joint_event, EVENT, EVENTS, STEP, 4)                                                         \
+    /* the profiler */                                                                                                 \
+    X(row_island, uint32_t, TALLY, COMMIT, STEP, 4)                                                                    \
+    X(tallies, tl_island_tally, TALLY, COMMIT, STEP, 4)                                                                \
+    X(ring, talus_frame, FRAME, EVENTS, STEP, 4)
 
 #endif

@@ -8,6 +8,7 @@
 /* --- colours ---------------------------------------------------------------------------------- */
 
 uint32_t tl_color_take(tl_header *h, uint32_t body_a, uint32_t body_b) {
+    tl_ties_changed(h);
     uint64_t *colors = tl_body_colors(h);
     int dynamic_a = tl_body_is_dynamic(h, body_a), dynamic_b = tl_body_is_dynamic(h, body_b);
     uint64_t used = (dynamic_a ? colors[body_a] : 0u) | (dynamic_b ? colors[body_b] : 0u);
@@ -28,6 +29,7 @@ uint32_t tl_color_take(tl_header *h, uint32_t body_a, uint32_t body_b) {
 }
 
 void tl_color_give(tl_header *h, uint32_t body_a, uint32_t body_b, uint32_t color) {
+    tl_ties_changed(h);
     if (color >= TL_COLORS) {
         return;
     }
@@ -208,6 +210,7 @@ void tl_body_set_awake(tl_header *h, uint32_t body) {
     if (rows[body]) {
         return;
     }
+    tl_ties_changed(h);
     tl_awake_body(h)[h->awake_bodies] = body;
     rows[body] = ++h->awake_bodies;
     meta->flags |= TL_BODY_AWAKE;
@@ -232,6 +235,7 @@ void tl_body_clear_awake(tl_header *h, uint32_t body) {
     if (row == 0) {
         return;
     }
+    tl_ties_changed(h);
     uint32_t last = list[--h->awake_bodies];
     list[row - 1u] = last;
     rows[last] = row;
@@ -250,6 +254,7 @@ void tl_island_wake(tl_header *h, uint32_t body) {
         uint32_t next = links[i].sleep_next;
         links[i].sleep_next = tl_bodies(h)[i].island = TL_NONE;
         tl_body_set_awake(h, i);
+        h->counters.bodies_woken++;
         i = next;
     } while (i != TL_NONE && i != body);
     h->counters.islands_woken++;

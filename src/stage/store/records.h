@@ -8,6 +8,7 @@
 #include "talus/body.h"
 #include "talus/events.h"
 #include "talus/joint.h"
+#include "talus/profile.h"
 #include "talus/shape.h"
 
 #define TL_NONE 0xffffffffu
@@ -186,5 +187,12 @@ typedef struct tl_joint_state {
     float force[3], torque[3];    /* N, N m on b over the last step */
     float linear_error, angular_error;
 } tl_joint_state;
+
+/* What an island holds, at the row of its root; of all islands at row 0. */
+typedef struct tl_island_tally {
+    uint32_t bodies, contacts, joints, rows; /* as in talus_frame_island */
+    uint32_t held;                           /* of the row's body alone: how many contacts and joints hold on to it */
+    uint32_t busiest;                        /* the row of the island in which that is most */
+} tl_island_tally;
 
 #endif

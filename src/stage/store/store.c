@@ -47,6 +47,12 @@ uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_
     capacity[TL_COUNT_JOINTGROUP] = def->joint_capacity;
     capacity[TL_COUNT_JOINTROW] = def->joint_capacity * 6u + TL_JOINT_ROWS;
     capacity[TL_COUNT_EVENT] = def->event_capacity;
+#ifdef TALUS_NO_PROFILE
+    capacity[TL_COUNT_FRAME] = 0;
+#else
+    capacity[TL_COUNT_FRAME] = def->profile_capacity;
+#endif
+    capacity[TL_COUNT_TALLY] = capacity[TL_COUNT_FRAME] ? capacity[TL_COUNT_ROW] : 0u;
     uint64_t unit = (sizeof(tl_header) + TL_UNIT - 1u) / TL_UNIT;
     for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
         offset[i] = (uint32_t)unit;
@@ -130,7 +136,7 @@ int talus_world_first_difference(const talus_world *a, const talus_world *b, tal
         return -1;
     }
     const tl_header *ha = tl_header_of(a), *hb = tl_header_of(b);
-    if (memcmp(ha->capacity, hb->capacity, sizeof ha->capacity) != 0) {
+    if (memcmp(ha->capacity, hb->capacity, TL_COUNT_OF_STATE * sizeof *ha->capacity) != 0) {
         return -1;
     }
     const unsigned char *pa = (const unsigned char *)&ha->settings, *pb = (const unsigned char *)&hb->settings;

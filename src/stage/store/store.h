@@ -7,7 +7,7 @@
 #include "talus/world.h"
 
 #define TL_BLOCK_MAGIC 0x53554c54u /* "TLUS" */
-#define TL_BLOCK_VERSION 1u
+#define TL_BLOCK_VERSION 2u
 #define TL_UNIT 64u /* bytes: columns start at multiples of it, offsets are counted in it */
 
 typedef enum tl_column_id {
@@ -36,6 +36,9 @@ typedef enum tl_count {
     TL_COUNT_JOINTGROUP,
     TL_COUNT_JOINTROW,
     TL_COUNT_EVENT,
+    TL_COUNT_OF_STATE, /* worlds that agree in those above have one layout of the state */
+    TL_COUNT_TALLY = TL_COUNT_OF_STATE,
+    TL_COUNT_FRAME,
     TL_COUNT_COUNT
 } tl_count;
 
@@ -78,6 +81,9 @@ typedef struct tl_header {
     talus_counters counters;
     tl_event_counts events;
     uint32_t groups, joint_groups, joint_rows; /* of the last step */
+    uint32_t frames, next_frame;               /* of the ring: in use, the place that the next step fills */
+    uint32_t ties, tallied;                    /* changes of what is tied and awake; as of the last tally */
+    uint32_t tallied_points, tallied_ties;     /* contact points; contacts and joints */
 } tl_header;
 
 /* One accessor a column: tl_body_pose(h) and so on. */
@@ -109,6 +115,15 @@ typedef struct tl_live {
     uint32_t rows, row_bytes, word;
 } tl_live;
 int tl_store_state(const tl_header *h, tl_column_id column, tl_live *out);
+
+/* What wakes, sleeps, begins or ceases to be tied by a contact or a joint says so, for the profiler's islands. */
+static inline void tl_ties_changed(tl_header *h) {
+#ifndef TALUS_NO_PROFILE
+    h->ties++;
+#else
+    (void)h;
+#endif
+}
 
 static inline talus_vec3 tl_row_xyz(const tl_row8 *r) { return tl_v(r->f[0], r->f[1], r->f[2]); }
 static inline talus_vec3 tl_row_345(const tl_row8 *r) { return tl_v(r->f[3], r->f[4], r->f[5]); }
