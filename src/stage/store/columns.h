@@ -2,8 +2,8 @@
  *
  * X(name, type, count, stage, life, word): `count` names a capacity, `stage` the one stage that writes the column
  * during a step, `life` whether it is part of the state (STATE: hashed, compared, saved), an index that makes steps
- * fast and never shows in the state's bits (INDEX: trees, pairs, lists) or is what steps leave behind (STEP), `word` the bytes
- * of its members, which are all of one size so that the hash does not depend on the byte order. */
+ * fast and never shows in the state's bits (INDEX: trees, pairs, lists) or is what steps leave behind (STEP), `word`
+ * the bytes of its members, which are all of one size so that the hash does not depend on the byte order. */
 #ifndef TL_COLUMNS_H
 #define TL_COLUMNS_H
 
