@@ -3,10 +3,12 @@
 #define TALUS_H
 
 #include "talus/body.h"
+#include "talus/command.h"
 #include "talus/events.h"
 #include "talus/hull.h"
 #include "talus/joint.h"
 #include "talus/loop.h"
+#include "talus/record.h"
 #include "talus/shape.h"
 #include "talus/snapshot.h"
 #include "talus/types.h"

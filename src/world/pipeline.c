@@ -2,7 +2,7 @@
 #include "stage/broad/refit.h"
 #include "stage/island/islands.h"
 #include "stage/stages.h"
-#include "talus/world.h"
+#include "world/command.h"
 
 /* A stopwatch on the caller's clock; does nothing without one. */
 typedef struct watch {
@@ -129,10 +129,9 @@ static void solve(tl_step *step, watch *w) {
     k->store_joints(step, 0, h->joint_groups);
 }
 
-talus_status talus_world_step(talus_world *world, float dt, const talus_clock *clock, talus_profile *profile) {
-    if (!tl_world_is_sound(world)) {
-        return TALUS_BAD_ARGUMENT;
-    }
+talus_status tl_run_world_step(talus_world *world, uint32_t i, talus_command *c) {
+    float dt = c->as.step.dt;
+    (void)i;
     if (!tl_is_finite(dt)) {
         return TALUS_NOT_FINITE;
     }
@@ -141,7 +140,7 @@ talus_status talus_world_step(talus_world *world, float dt, const talus_clock *c
     }
     watch w;
     tl_step step;
-    watch_start(&w, clock, profile);
+    watch_start(&w, c->as.step.clock, c->as.step.profile);
     begin_step(&step, world, dt);
     tl_header *h = step.h;
     watch_lap(&w, TALUS_STAGE_COMMANDS);

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "talus/command.h"
 #include "world/world_internal.h"
 
 #define SNAPSHOT_MAGIC 0x50534c54u /* "TLSP" */
@@ -120,5 +121,8 @@ talus_status talus_world_restore(talus_world *world, const void *snapshot, size_
         }
     }
     tl_pairs_rebuild(h);
+    if (world->log) {
+        world->log->lost++; /* no command says what this did */
+    }
     return TALUS_OK;
 }

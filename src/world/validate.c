@@ -2,6 +2,7 @@
  * is read through an index before it was checked, so a damaged block gives a status and not a crash. */
 #include <string.h>
 
+#include "geom/mass.h"
 #include "world/world_internal.h"
 
 #define UNIT_SLACK 1e-3f /* how far the square of a rotation's length may be from 1 */
@@ -25,7 +26,7 @@ static int pool_is_sound(const tl_pool *p, uint32_t capacity) {
 }
 
 static int header_is_sound(const tl_header *h) {
-    talus_world world = {(void *)(uintptr_t)h, NULL, 0};
+    talus_world world = {(void *)(uintptr_t)h, NULL, 0, NULL};
     talus_world_def def;
     uint32_t capacity[TL_COUNT_COUNT], offset[TL_COLUMN_COUNT];
     talus_world_get_def(&world, &def);
@@ -61,7 +62,8 @@ static int body_is_sound(const tl_header *h, uint32_t i) {
            is_rotation(tl_body_frame(h)[i].f + 3) && all_finite(tl_body_velocity(h)[i].f, 8);
 }
 
-static int shape_is_sound(const tl_header *h, uint32_t i) {
+static int shape_is_sound(const talus_world *world, uint32_t i) {
+    const tl_header *h = tl_header_of(world);
     const tl_shape_meta *m = &tl_shapes(h)[i];
     if (m->next != TL_NONE && m->next >= h->shapes.high) {
         return 0;
@@ -70,7 +72,7 @@ static int shape_is_sound(const tl_header *h, uint32_t i) {
         return 1;
     }
     return m->body < h->bodies.high && (tl_bodies(h)[m->body].flags & TL_BODY_ALIVE) &&
-           (unsigned)tl_shape_geometry(h)[i].type < TALUS_SHAPE_TYPE_COUNT &&
+           tl_geometry_check(&tl_shape_geometry(h)[i], world->geometry, world->geometry_bytes) == TALUS_OK &&
            (m->node == TL_NONE || (m->node < h->nodes.high && tl_nodes(h)[m->node].child[0] == TL_NONE &&
                                    tl_nodes(h)[m->node].child[1] == i)) &&
            all_finite(tl_shape_place(h)[i].f, 8) && all_finite(tl_shape_fat(h)[i].f, 8);
@@ -196,19 +198,20 @@ static int joint_is_sound(const tl_header *h, uint32_t i) {
     return j->awake_index == TL_NONE || (j->awake_index < h->awake_joints && tl_awake_joint(h)[j->awake_index] == i);
 }
 
+/* Whether what each list names is there and knows its place in the list. */
 static int lists_are_sound(const tl_header *h) {
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
-        if (tl_awake_body(h)[k] >= h->bodies.high) {
+        if (tl_awake_body(h)[k] >= h->bodies.high || tl_body_row(h)[tl_awake_body(h)[k]] != k + 1u) {
             return 0;
         }
     }
     for (uint32_t k = 0; k < h->awake_contacts; k++) {
-        if (tl_awake_contact(h)[k] >= h->contacts.high) {
+        if (tl_awake_contact(h)[k] >= h->contacts.high || tl_contacts(h)[tl_awake_contact(h)[k]].awake_index != k) {
             return 0;
         }
     }
     for (uint32_t k = 0; k < h->awake_joints; k++) {
-        if (tl_awake_joint(h)[k] >= h->joints.high) {
+        if (tl_awake_joint(h)[k] >= h->joints.high || tl_joints(h)[tl_awake_joint(h)[k]].awake_index != k) {
             return 0;
         }
     }
@@ -235,7 +238,7 @@ talus_status talus_world_validate(const talus_world *world) {
         }
     }
     for (uint32_t i = 0; i < h->shapes.high; i++) {
-        if (!shape_is_sound(h, i)) {
+        if (!shape_is_sound(world, i)) {
             return TALUS_BAD_BLOB;
         }
     }

@@ -27,6 +27,18 @@ static inline talus_status tl_check_pose(const talus_pose *p) {
     return q.x == 0.0f && q.y == 0.0f && q.z == 0.0f && q.w == 0.0f ? TALUS_BAD_ARGUMENT : tl_check_point(p->position);
 }
 
+/* Takes the slot that tl_pool_top gave, `next` being its link in the free list. */
+static inline void tl_pool_take(tl_pool *pool, uint32_t i, uint32_t next) {
+    if (i == pool->free) {
+        pool->free = next;
+    } else {
+        pool->high++;
+    }
+    pool->used++;
+    pool->peak = pool->used > pool->peak ? pool->used : pool->peak;
+}
+static inline uint32_t tl_next_generation(uint32_t generation) { return generation + 1u ? generation + 1u : 1u; }
+
 /* The pose of the body's origin. */
 talus_pose tl_body_origin(const tl_header *h, uint32_t body);
 

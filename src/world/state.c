@@ -1,0 +1,355 @@
+/* The state as columns: hashing, writing, reading, comparing. */
+#include "world/state.h"
+
+#include <string.h>
+
+#include "world/command.h"
+#include "world/world_internal.h"
+
+typedef char columns_fit_a_mask[TL_STATE_COUNT <= TALUS_MAX_COLUMNS ? 1 : -1];
+
+typedef struct column_info {
+    const char *name;
+    uint32_t column; /* tl_column_id */
+    uint32_t count;  /* tl_count */
+    uint32_t row_bytes, word;
+    talus_stage stage;
+} column_info;
+
+#define NO_COLUMN TL_COLUMN_COUNT
+#define SETTINGS_BYTES (uint32_t)sizeof(tl_settings)
+#define COUNTS_BYTES (uint32_t)(offsetof(tl_header, end) - offsetof(tl_header, bodies))
+
+static const column_info COLUMNS[TL_STATE_COUNT] = {
+    {"settings", NO_COLUMN, TL_COUNT_COUNT, SETTINGS_BYTES, 4, TALUS_STAGE_COMMANDS},
+    {"counts", NO_COLUMN, TL_COUNT_COUNT, COUNTS_BYTES, 4, TALUS_STAGE_COMMANDS},
+#define X(name, type, count, stage, life, word)                                                                        \
+    TL_STATE_ONLY_##life({#name, TL_COLUMN_##name, TL_COUNT_##count, sizeof(type), word, TALUS_STAGE_##stage}, )
+    TL_COLUMNS(X)
+#undef X
+};
+
+tl_live tl_state_rows(const tl_header *h, uint32_t column) {
+    const column_info *c = &COLUMNS[column];
+    tl_live live;
+    if (c->column != NO_COLUMN) {
+        tl_store_state(h, (tl_column_id)c->column, &live);
+        return live;
+    }
+    const void *data = column == TL_STATE_settings ? (const void *)&h->settings : (const void *)&h->bodies;
+    live.data = (unsigned char *)(uintptr_t)data;
+    live.rows = 1;
+    live.row_bytes = c->row_bytes;
+    return live;
+}
+
+/* --- hashes ----------------------------------------------------------------------------------- */
+
+/* The sum of products of word pairs, each word first moved by a key of its place: the NH of UMAC (Black, Halevi,
+ * Krawczyk, Krovetz, Rogaway, CRYPTO 1999, section 4), with keys that count up instead of random ones. A single word
+ * that changes changes the sum unless its partner is exactly its key's complement. */
+#define BLOCK_WORDS 8u
+#define KEY_STEP 0x9e3779b1u
+
+typedef struct block_sum {
+    uint64_t sum[4];
+    uint32_t key[BLOCK_WORDS];
+} block_sum;
+
+static void add_block(block_sum *s, const uint32_t w[BLOCK_WORDS]) {
+    for (unsigned k = 0; k < 4u; k++) {
+        s->sum[k] += (uint64_t)(w[k] + s->key[k]) * (uint32_t)(w[k + 4u] + s->key[k + 4u]);
+    }
+    for (unsigned k = 0; k < BLOCK_WORDS; k++) {
+        s->key[k] += KEY_STEP;
+    }
+}
+
+static uint32_t hash_words(const unsigned char *p, size_t words, uint32_t word) {
+    block_sum s = {{0, 0, 0, 0},
+                   {0x243f6a88u, 0x85a308d3u, 0x13198a2eu, 0x03707344u, 0xa4093822u, 0x299f31d0u, 0x082efa98u,
+                    0xec4e6c89u}}; /* the first digits of pi */
+    int swap = word == 8u && tl_is_big_endian();
+    uint32_t w[BLOCK_WORDS];
+    for (size_t i = 0; i < words; i += BLOCK_WORDS) {
+        size_t n = words - i < BLOCK_WORDS ? words - i : BLOCK_WORDS;
+        if (n < BLOCK_WORDS) {
+            memset(w, 0, sizeof w);
+            memcpy(w, p + 4u * i, 4u * n);
+        } else {
+            memcpy(w, p + 4u * i, sizeof w);
+        }
+        for (unsigned k = 0; swap && k < BLOCK_WORDS; k += 2u) {
+            uint32_t high = w[k];
+            w[k] = w[k + 1u], w[k + 1u] = high;
+        }
+        add_block(&s, w);
+    }
+    uint64_t h = words;
+    for (unsigned k = 0; k < 4u; k++) {
+        h = (h ^ s.sum[k]) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 32;
+    }
+    return (uint32_t)h;
+}
+
+void tl_state_hashes(const tl_header *h, uint32_t *out, uint32_t columns) {
+    for (uint32_t i = 0; i < columns; i++) {
+        tl_live live = tl_state_rows(h, i);
+        out[i] = hash_words(live.data, (size_t)live.rows * live.row_bytes / 4u, COLUMNS[i].word);
+    }
+}
+
+/* --- bytes ------------------------------------------------------------------------------------ */
+
+/* Copies words, turning each around where this machine keeps the highest byte first. */
+static void copy_words(unsigned char *to, const unsigned char *from, size_t bytes, uint32_t word) {
+    if (!tl_is_big_endian()) {
+        memcpy(to, from, bytes);
+        return;
+    }
+    for (size_t i = 0; i < bytes; i += word) {
+        for (uint32_t k = 0; k < word; k++) {
+            to[i + k] = from[i + word - 1u - k];
+        }
+    }
+}
+
+size_t tl_state_size(const tl_header *h) {
+    size_t size = 0;
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        tl_live live = tl_state_rows(h, i);
+        size += (size_t)live.rows * live.row_bytes;
+    }
+    return size;
+}
+
+static uint32_t capacity_of(const tl_header *h, uint32_t column) {
+    return COLUMNS[column].column == NO_COLUMN ? 1u : h->capacity[COLUMNS[column].count];
+}
+
+size_t tl_state_most(const tl_header *h) {
+    size_t size = 0;
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        size += (size_t)capacity_of(h, i) * COLUMNS[i].row_bytes;
+    }
+    return size;
+}
+
+void tl_state_write(const tl_header *h, unsigned char *out) {
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        tl_live live = tl_state_rows(h, i);
+        size_t bytes = (size_t)live.rows * live.row_bytes;
+        copy_words(out, live.data, bytes, COLUMNS[i].word);
+        out += bytes;
+    }
+}
+
+int tl_state_read(tl_header *h, const unsigned char *in, size_t bytes) {
+    if (bytes < SETTINGS_BYTES + COUNTS_BYTES) {
+        return 0;
+    }
+    tl_header next = *h, before = *h;
+    copy_words((unsigned char *)&next.settings, in, SETTINGS_BYTES, 4);
+    copy_words((unsigned char *)&next.bodies, in + SETTINGS_BYTES, COUNTS_BYTES, 4);
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        if (tl_state_rows(&next, i).rows > capacity_of(h, i)) {
+            return 0;
+        }
+    }
+    if (next.bodies.high < 1u || tl_state_size(&next) != bytes) {
+        return 0;
+    }
+    *h = next;
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        tl_live live = tl_state_rows(h, i);
+        size_t used = (size_t)live.rows * live.row_bytes;
+        size_t was = (size_t)tl_state_rows(&before, i).rows * live.row_bytes;
+        copy_words(live.data, in, used, COLUMNS[i].word);
+        if (was > used) { /* rows that were not in use then are as new */
+            memset(live.data + used, 0, was - used);
+        }
+        in += used;
+    }
+    tl_pairs_rebuild(h);
+    return 1;
+}
+
+uint32_t tl_state_layout(void) {
+    uint32_t hash = 2166136261u; /* FNV-1a */
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        for (const char *p = COLUMNS[i].name; *p; p++) {
+            hash = (hash ^ (unsigned char)*p) * 16777619u;
+        }
+        hash = (hash ^ COLUMNS[i].row_bytes) * 16777619u;
+        hash = (hash ^ COLUMNS[i].word) * 16777619u;
+    }
+    return hash;
+}
+
+/* --- columns ---------------------------------------------------------------------------------- */
+
+static talus_row_kind rows_of(const column_info *c) {
+    switch (c->column) {
+    case TL_COLUMN_awake_body:
+    case TL_COLUMN_awake_contact:
+    case TL_COLUMN_awake_joint:
+    case TL_COLUMN_moved_shape:
+        return TALUS_ROW_OF_LIST;
+    default:
+        break;
+    }
+    switch (c->count) {
+    case TL_COUNT_BODY:
+        return TALUS_ROW_OF_BODY;
+    case TL_COUNT_SHAPE:
+        return TALUS_ROW_OF_SHAPE;
+    case TL_COUNT_NODE:
+        return TALUS_ROW_OF_NODE;
+    case TL_COUNT_CONTACT:
+        return TALUS_ROW_OF_CONTACT;
+    case TL_COUNT_JOINT:
+        return TALUS_ROW_OF_JOINT;
+    default:
+        return TALUS_ROW_OF_WORLD;
+    }
+}
+
+uint32_t talus_column_count(void) { return TL_STATE_COUNT; }
+
+talus_status talus_column_get(uint32_t column, talus_column *out) {
+    if (column >= TL_STATE_COUNT || !out) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    const column_info *c = &COLUMNS[column];
+    out->name = c->name;
+    out->stage = c->stage;
+    out->rows = rows_of(c);
+    out->row_bytes = c->row_bytes, out->word_bytes = c->word;
+    return TALUS_OK;
+}
+
+uint32_t talus_column_rows(const talus_world *world, uint32_t column) {
+    return tl_world_is_sound(world) && column < TL_STATE_COUNT ? tl_state_rows(tl_header_of(world), column).rows : 0;
+}
+
+/* --- comparing -------------------------------------------------------------------------------- */
+
+/* The place of a column in the order in which a step writes them. */
+static uint32_t turn_of(uint32_t column, int commands) {
+    if (COLUMNS[column].stage == TALUS_STAGE_COMMANDS) {
+        return commands ? 0 : TALUS_STAGE_COUNT;
+    }
+    return (uint32_t)COLUMNS[column].stage;
+}
+
+static void find_bodies(const tl_header *h, talus_parting *out) {
+    uint32_t row = out->row, a = TL_NONE, b = TL_NONE;
+    switch (out->column.rows) {
+    case TALUS_ROW_OF_BODY:
+        a = row;
+        break;
+    case TALUS_ROW_OF_SHAPE:
+        a = row < h->shapes.high ? tl_shapes(h)[row].body : TL_NONE;
+        break;
+    case TALUS_ROW_OF_CONTACT:
+        if (row < h->contacts.high) {
+            a = tl_contacts(h)[row].body_a, b = tl_contacts(h)[row].body_b;
+        }
+        break;
+    case TALUS_ROW_OF_JOINT:
+        if (row < h->joints.high) {
+            a = tl_joints(h)[row].body_a, b = tl_joints(h)[row].body_b;
+        }
+        break;
+    default:
+        break;
+    }
+    if (a < h->bodies.high) {
+        out->body_a.index = a, out->body_a.generation = tl_bodies(h)[a].generation;
+        out->user_data_a = tl_body_user(h)[a];
+    }
+    if (b < h->bodies.high) {
+        out->body_b.index = b, out->body_b.generation = tl_bodies(h)[b].generation;
+        out->user_data_b = tl_body_user(h)[b];
+    }
+}
+
+static uint64_t word_at(const unsigned char *p, uint32_t word) {
+    uint64_t both;
+    uint32_t one;
+    if (word == 8u) {
+        memcpy(&both, p, 8u);
+        return both;
+    }
+    memcpy(&one, p, 4u);
+    return one;
+}
+
+/* The first word of a column in which two states differ; 0 if they are the same. */
+static int column_parts(const tl_header *a, const tl_header *b, uint32_t column, talus_parting *out) {
+    tl_live la = tl_state_rows(a, column), lb = tl_state_rows(b, column);
+    uint32_t rows = la.rows < lb.rows ? la.rows : lb.rows, word = COLUMNS[column].word;
+    memset(out, 0, sizeof *out);
+    talus_column_get(column, &out->column);
+    for (uint32_t row = 0; row < rows; row++) {
+        const unsigned char *pa = la.data + (size_t)row * la.row_bytes, *pb = lb.data + (size_t)row * la.row_bytes;
+        for (uint32_t k = 0; memcmp(pa, pb, la.row_bytes) != 0 && k < la.row_bytes; k += word) {
+            if (memcmp(pa + k, pb + k, word) != 0) {
+                out->row = row, out->word = k / word;
+                out->value[0] = word_at(pa + k, word), out->value[1] = word_at(pb + k, word);
+                find_bodies(a, out);
+                return 1;
+            }
+        }
+    }
+    if (la.rows != lb.rows) {
+        out->row = rows;
+        out->rows[0] = la.rows, out->rows[1] = lb.rows;
+        find_bodies(la.rows > lb.rows ? a : b, out);
+        return 1;
+    }
+    return 0;
+}
+
+int talus_world_part(const talus_world *a, const talus_world *b, int commands, talus_parting *out) {
+    if (!tl_world_is_sound(a) || !tl_world_is_sound(b) || !out) {
+        return -1;
+    }
+    const tl_header *ha = tl_header_of(a), *hb = tl_header_of(b);
+    if (memcmp(ha->capacity, hb->capacity, sizeof ha->capacity) != 0) {
+        return -1;
+    }
+    uint32_t best = 0, columns = 0;
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        talus_parting found;
+        if (column_parts(ha, hb, i, &found) && (columns++ == 0 || turn_of(i, commands) < turn_of(best, commands))) {
+            *out = found;
+            best = i;
+        }
+    }
+    out->columns = columns;
+    return columns > 0;
+}
+
+talus_status tl_run_world_flip(talus_world *world, uint32_t i, talus_command *c) {
+    tl_header *h = tl_header_of(world);
+    const talus_command_flip *f = &c->as.flip;
+    (void)i;
+    if (f->column >= TL_STATE_COUNT) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    tl_live live = tl_state_rows(h, f->column);
+    if (f->row >= live.rows || f->bit >= 8u * live.row_bytes) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    uint32_t width = COLUMNS[f->column].word, byte = f->bit % (8u * width) / 8u;
+    byte = f->bit / (8u * width) * width + (tl_is_big_endian() ? width - 1u - byte : byte);
+    unsigned char *at = live.data + (size_t)f->row * live.row_bytes + byte;
+    *at ^= (unsigned char)(1u << f->bit % 8u);
+    if (talus_world_validate(world) != TALUS_OK) {
+        *at ^= (unsigned char)(1u << f->bit % 8u);
+        return TALUS_BAD_ARGUMENT;
+    }
+    return TALUS_OK;
+}

@@ -1,0 +1,47 @@
+/* The state of a world as a list of columns: two that stand for the header, then those that columns.h calls STATE. What
+ * recordings hash, write and compare. */
+#ifndef TL_STATE_H
+#define TL_STATE_H
+
+#include "stage/store/store.h"
+#include "talus/record.h"
+
+/* Only the columns of the state make an entry. */
+#define TL_STATE_ONLY_STATE(...) __VA_ARGS__
+#define TL_STATE_ONLY_INDEX(...)
+#define TL_STATE_ONLY_STEP(...)
+
+typedef enum tl_state_id {
+    TL_STATE_settings, /* of the definition, and the last step's length */
+    TL_STATE_counts,   /* of rows in use, list heads, steps */
+#define X(name, type, count, stage, life, word) TL_STATE_ONLY_##life(TL_STATE_##name, )
+    TL_COLUMNS(X)
+#undef X
+        TL_STATE_COUNT
+} tl_state_id;
+
+/* The rows in use. */
+tl_live tl_state_rows(const tl_header *h, uint32_t column);
+
+/* A 32-bit hash of each of the first `columns` columns, the same in either byte order. One pass over the rows in use.
+ */
+#define TL_STATE_OF_HEADER 2u
+void tl_state_hashes(const tl_header *h, uint32_t *out, uint32_t columns);
+
+/* The state as bytes, every member lowest byte first. tl_state_read changes nothing and returns 0 unless the bytes are
+ * the state of a world of these capacities; whether it is sound is for talus_world_validate to say. */
+size_t tl_state_size(const tl_header *h);
+size_t tl_state_most(const tl_header *h); /* with every capacity used up */
+void tl_state_write(const tl_header *h, unsigned char *out);
+int tl_state_read(tl_header *h, const unsigned char *in, size_t bytes);
+
+/* A number that changes with the names, the order and the sizes of the columns. */
+uint32_t tl_state_layout(void);
+
+/* Whether this machine keeps the highest byte first. */
+static inline int tl_is_big_endian(void) {
+    const uint32_t one = 1u;
+    return *(const unsigned char *)&one == 0;
+}
+
+#endif
