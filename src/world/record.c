@@ -43,6 +43,7 @@ void tl_record_put_hull(unsigned char *out, const talus_hull *hull) {
     const unsigned char *from = (const unsigned char *)hull;
     copy_small(out, from, hull->vertex_edge, 4);
     copy_small(out + hull->vertex_edge, from + hull->vertex_edge, hull->bytes - hull->vertex_edge, 2);
+    tl_put32(out + offsetof(talus_hull, checksum), 0); /* of this machine's words; the chunk has one of its own */
 }
 
 int tl_record_get_hull(unsigned char *out, const unsigned char *in, size_t bytes) {
@@ -61,7 +62,7 @@ int tl_record_get_hull(unsigned char *out, const unsigned char *in, size_t bytes
     }
     copy_small(out, in, h.vertex_edge, 4);
     copy_small(out + h.vertex_edge, in + h.vertex_edge, bytes - h.vertex_edge, 2);
-    h.checksum = tl_hull_checksum(out, h.bytes); /* it is of this machine's words */
+    h.checksum = tl_hull_checksum(out, h.bytes);
     memcpy(out, &h, 16);
     return 1;
 }
