@@ -40,9 +40,12 @@ talus_status talus_column_get(uint32_t column, talus_column *out);
 /* How many rows are in use now. */
 uint32_t talus_column_rows(const talus_world *world, uint32_t column);
 
-/* The first place in which two worlds of the same capacities part: in the order of the stages of a step, the columns
- * that commands write first if `commands` is not zero and last if it is, for then a later stage changed them too.
- * Returns 1 if they differ, 0 if they are the same, -1 if they cannot be compared. */
+/* The column of a set, a bit each, that a step writes first, or talus_column_count() for an empty set. Those that
+ * commands write stand first if `commands` is not zero and last if it is, for then a later stage changed them too. */
+uint32_t talus_column_first(uint64_t columns, int commands);
+
+/* The first place in which two worlds of the same capacities part, in the order of talus_column_first. Returns 1 if
+ * they do, 0 if they are the same, -1 if they cannot be compared. */
 typedef struct talus_parting {
     talus_column column;
     uint32_t row, word;                /* which member of the row */

@@ -243,6 +243,16 @@ static uint32_t turn_of(uint32_t column, int commands) {
     return (uint32_t)COLUMNS[column].stage;
 }
 
+uint32_t talus_column_first(uint64_t columns, int commands) {
+    uint32_t best = TL_STATE_COUNT;
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        if ((columns >> i & 1u) && (best == TL_STATE_COUNT || turn_of(i, commands) < turn_of(best, commands))) {
+            best = i;
+        }
+    }
+    return best;
+}
+
 static void find_bodies(const tl_header *h, talus_parting *out) {
     uint32_t row = out->row, a = TL_NONE, b = TL_NONE;
     switch (out->column.rows) {
@@ -320,13 +330,15 @@ int talus_world_part(const talus_world *a, const talus_world *b, int commands, t
     if (memcmp(ha->capacity, hb->capacity, sizeof ha->capacity) != 0) {
         return -1;
     }
-    uint32_t best = 0, columns = 0;
+    uint64_t differ = 0;
+    uint32_t columns = 0;
     for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
-        talus_parting found;
-        if (column_parts(ha, hb, i, &found) && (columns++ == 0 || turn_of(i, commands) < turn_of(best, commands))) {
-            *out = found;
-            best = i;
-        }
+        int parts = column_parts(ha, hb, i, out);
+        differ |= (uint64_t)parts << i;
+        columns += (uint32_t)parts;
+    }
+    if (columns > 0) {
+        column_parts(ha, hb, talus_column_first(differ, commands), out);
     }
     out->columns = columns;
     return columns > 0;

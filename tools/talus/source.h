@@ -29,13 +29,13 @@ enum {
 };
 
 /* Rows of a getopt_long table. */
+/* clang-format off */
 #define SOURCE_LONG_OPTIONS                                                                                            \
     {"steps", required_argument, NULL, SOURCE_STEPS}, {"dt", required_argument, NULL, SOURCE_DT},                      \
-        {"substeps", required_argument, NULL, SOURCE_SUBSTEPS},                                                        \
-        {"iterations", required_argument, NULL, SOURCE_ITERATIONS}, {"isa", required_argument, NULL, SOURCE_ISA},      \
-        {"threads", required_argument, NULL, SOURCE_THREADS}, {                                                        \
-        "no-sleep", no_argument, NULL, SOURCE_NO_SLEEP                                                                 \
-    }
+    {"substeps", required_argument, NULL, SOURCE_SUBSTEPS}, {"threads", required_argument, NULL, SOURCE_THREADS},      \
+    {"iterations", required_argument, NULL, SOURCE_ITERATIONS}, {"isa", required_argument, NULL, SOURCE_ISA},          \
+    {"no-sleep", no_argument, NULL, SOURCE_NO_SLEEP}
+/* clang-format on */
 
 /* Nothing but the scene's own and the library's. */
 source_options source_options_default(void);

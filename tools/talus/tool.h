@@ -6,6 +6,8 @@
 
 /* Besides those of gltf_status. */
 #define TOOL_USAGE 2
+#define TOOL_DIVERGED 5 /* two runs part */
+#define TOOL_SHORTER 6  /* they are the same as far as the shorter one goes */
 
 /* "talus: " and a line on the standard error; returns `status`. */
 int tool_fail(int status, const char *format, ...) GLTF_PRINTF(2, 3);
@@ -13,6 +15,9 @@ int tool_fail(int status, const char *format, ...) GLTF_PRINTF(2, 3);
 /* Subcommands: their arguments without the tool's name, the subcommand's name first. */
 int tool_run(int count, char **arguments);
 int tool_scene(int count, char **arguments);
+int tool_record(int count, char **arguments);
+int tool_replay(int count, char **arguments);
+int tool_diff(int count, char **arguments);
 
 /* The manual page of a subcommand, or of the tool if it is null; 0 if there is none. */
 int tool_print_manual(const char *subcommand);
