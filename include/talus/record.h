@@ -148,7 +148,8 @@ typedef enum talus_replayed {
 talus_replayed talus_replay_step(talus_replay *replay, talus_world *world);
 /* The columns whose hash is not the recorded one, a bit each: 0 if the replay is true. One pass over the state. */
 uint64_t talus_replay_compare(const talus_replay *replay, const talus_world *world);
-/* Takes the last keyframe at or before a step; from there it is reached by steps. TALUS_BAD_BLOB. */
+/* Takes the last keyframe at or before a step; from there it is reached by steps. TALUS_BAD_BLOB; if it is the state
+ * that is not sound, no call takes the world any more. */
 talus_status talus_replay_seek(talus_replay *replay, talus_world *world, uint32_t step);
 /* Goes to the next step without doing it, for what is recorded of it; 0 if there is none. */
 int talus_replay_next(talus_replay *replay);

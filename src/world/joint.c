@@ -321,6 +321,20 @@ int talus_joint_is_valid(const talus_world *world, talus_joint joint) {
     return tl_find_joint(world, joint, &i) == TALUS_OK;
 }
 
+int tl_joint_is_compiled(const talus_world *world, uint32_t i) {
+    const tl_header *h = tl_header_of(world);
+    const tl_joint_record *j = &tl_joints(h)[i];
+    const talus_joint joint = {i, j->generation};
+    talus_joint_def def;
+    tl_joint_record again = *j;
+    if (talus_joint_get_def(world, joint, &def) != TALUS_OK || check_def(&def) != TALUS_OK) {
+        return 0;
+    }
+    compile(&again);
+    tl_joint_place(h, &again);
+    return memcmp(j, &again, sizeof again) == 0;
+}
+
 static talus_axis load_axis(const tl_joint_axis_record *r) {
     talus_axis a = {(talus_axis_mode)r->mode, r->lower, r->upper, r->stiffness, r->damping};
     return a;

@@ -172,8 +172,11 @@ static talus_status take_hulls(const talus_replay *r, unsigned char *region) {
 
 static talus_status take_keyframe(talus_replay *r, talus_world *world, const chunk *c) {
     const unsigned char *state = c->payload + 4u * TL_STATE_COUNT;
-    if (!tl_state_read(tl_header_of(world), state, c->bytes - 4u * TL_STATE_COUNT) ||
-        talus_world_validate(world) != TALUS_OK) {
+    if (!tl_state_read(tl_header_of(world), state, c->bytes - 4u * TL_STATE_COUNT)) {
+        return TALUS_BAD_BLOB;
+    }
+    if (talus_world_validate(world) != TALUS_OK) {
+        tl_header_of(world)->magic = 0; /* so that no call follows what is not sound */
         return TALUS_BAD_BLOB;
     }
     for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {

@@ -53,4 +53,9 @@ void tl_shape_remove(tl_header *h, uint32_t shape);
 /* Where the joint's frames stand in the bodies' mass frames. */
 void tl_joint_place(const tl_header *h, tl_joint_record *joint);
 
+/* Parts of talus_world_validate: whether a joint's numbers are in order and its rows what they are compiled to; whether
+ * all floats are finite. The bodies' indices have been looked at. */
+int tl_joint_is_compiled(const talus_world *world, uint32_t joint);
+int tl_numbers_are_sound(const tl_header *h);
+
 #endif
