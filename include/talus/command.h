@@ -124,8 +124,8 @@ size_t talus_command_decode(talus_command *command, const void *bytes, size_t si
  * counted, and so is a restore, which no log holds; a caller that finds lost ones needs the state itself to go on. */
 struct talus_log {
     unsigned char *memory;
-    size_t capacity, used; /* bytes */
-    uint32_t steps, others, lost;
+    size_t capacity, used;               /* bytes */
+    uint32_t steps, others, flips, lost; /* flips are among the others */
 };
 
 #ifdef __cplusplus

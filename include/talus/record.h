@@ -1,5 +1,6 @@
-/* Recordings: a world's state, the hulls it needs, and the commands that were done to it, with a hash of every column
- * of the state after every step. Replaying one on any machine gives the same bits, or says where they part.
+/* Recordings: a world's state, the hulls it needs, and the commands that were done to it, with a hash after every step
+ * of what is awake, by columns, and every 64 steps of the whole state. Replaying one on any machine gives the same
+ * bits, or says where they part.
  *
  * A recording is a run of bytes, little-endian, of chunks with checksums. The library does no I/O: the recorder hands
  * out the bytes to append to a file, the replay reads the bytes of one. */
@@ -68,7 +69,6 @@ typedef struct talus_recorder {
     uint64_t work;          /* bodies awake, summed over the steps since the last keyframe */
     uint64_t keyframe_work; /* a keyframe is due after so much of it; may be set after talus_recorder_begin */
     uint32_t steps, keyframes;
-    int still;     /* nothing was awake after the last step */
     uint32_t gaps; /* steps recorded by their outcome, for their commands were lost */
     uint32_t hash[TALUS_MAX_COLUMNS];
 } talus_recorder;
@@ -85,8 +85,9 @@ size_t talus_recorder_size(const talus_world *world, size_t commands);
  * TALUS_SMALL_BLOCK; TALUS_BAD_ARGUMENT. */
 talus_status talus_recorder_begin(talus_recorder *recorder, talus_world *world, void *memory, size_t capacity,
                                   const void **bytes, size_t *size);
-/* To be called after every step. One pass over the state. If commands did not fit the memory or the world was restored,
- * the step is recorded by its outcome. TALUS_SMALL_BLOCK if hulls were added for which there is no room. */
+/* To be called after every step. One pass over what is awake, and over the whole state every 64 steps. If commands did
+ * not fit the memory or the world was restored, the step is recorded by its outcome. TALUS_SMALL_BLOCK if hulls were
+ * added for which there is no room. */
 talus_status talus_recorder_step(talus_recorder *recorder, talus_world *world, const void **bytes, size_t *size);
 /* Ends, with the commands since the last step, and takes the log off. */
 talus_status talus_recorder_end(talus_recorder *recorder, talus_world *world, const void **bytes, size_t *size);
@@ -118,9 +119,11 @@ typedef struct talus_replay {
     int cut; /* the end is missing, from `offset` on */
     /* where the replay stands */
     size_t at;
-    uint32_t step;                    /* steps done */
-    uint32_t hash[TALUS_MAX_COLUMNS]; /* as recorded */
-    const unsigned char *commands;    /* of the last step */
+    uint32_t step;                     /* steps done */
+    uint32_t hash[TALUS_MAX_COLUMNS];  /* as recorded: of what is awake, in the columns that stages write */
+    uint32_t whole[TALUS_MAX_COLUMNS]; /* of all rows of every column, if `has_whole` */
+    int has_whole;
+    const unsigned char *commands; /* of the last step */
     size_t command_bytes;
     uint32_t lost;        /* commands of the last step that were not recorded */
     size_t done;          /* bytes of the last step's commands that were carried out */
@@ -146,13 +149,16 @@ typedef enum talus_replayed {
 
 /* Does the next step's commands to the world. */
 talus_replayed talus_replay_step(talus_replay *replay, talus_world *world);
-/* The columns whose hash is not the recorded one, a bit each: 0 if the replay is true. One pass over the state. */
+/* The columns whose hash is not the recorded one, a bit each: 0 if the replay is true. One pass over what is awake, and
+ * over the whole state where the recording has hashes of it. */
 uint64_t talus_replay_compare(const talus_replay *replay, const talus_world *world);
 /* Takes the last keyframe at or before a step; from there it is reached by steps. TALUS_BAD_BLOB; if it is the state
  * that is not sound, no call takes the world any more. */
 talus_status talus_replay_seek(talus_replay *replay, talus_world *world, uint32_t step);
 /* Goes to the next step without doing it, for what is recorded of it; 0 if there is none. */
 int talus_replay_next(talus_replay *replay);
+/* The columns whose recorded hashes differ where two replays stand, a bit each. */
+uint64_t talus_replay_differ(const talus_replay *a, const talus_replay *b);
 
 #ifdef __cplusplus
 }

@@ -178,6 +178,7 @@ static void add_to_log(talus_log *log, const talus_command *command) {
     log->lost += size == 0;
     log->steps += command->kind == TALUS_COMMAND_WORLD_STEP;
     log->others += command->kind != TALUS_COMMAND_WORLD_STEP;
+    log->flips += command->kind == TALUS_COMMAND_WORLD_FLIP;
 }
 
 static talus_status find_target(const talus_world *world, const talus_command *c, target of, uint32_t *i) {

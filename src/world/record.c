@@ -79,21 +79,27 @@ static size_t close_chunk(unsigned char *at, uint32_t kind, size_t bytes, uint32
     return TL_CHUNK_HEAD + bytes;
 }
 
-#define STEP_BEFORE (TL_CHUNK_HEAD + 8u)              /* bytes of a step's chunk before the commands */
-#define STEP_AFTER (8u + 4u * (size_t)TL_STATE_COUNT) /* and behind them, at most */
-#define KEYFRAME_HASHES (4u * (size_t)TL_STATE_COUNT)
+#define STEP_BEFORE (TL_CHUNK_HEAD + 12u)  /* bytes of a step's chunk before the commands */
+#define STEP_AFTER (8u + TL_RECORD_HASHES) /* and behind them, at most */
 
-static size_t keyframe_most(const tl_header *h) { return TL_CHUNK_HEAD + KEYFRAME_HASHES + tl_state_most(h); }
+static size_t keyframe_most(const tl_header *h) { return TL_CHUNK_HEAD + TL_RECORD_HASHES + tl_state_most(h); }
+
+static void put_words(unsigned char *at, const uint32_t *words, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        tl_put32(at + 4u * i, words[i]);
+    }
+}
 
 static size_t write_keyframe(talus_recorder *r, const tl_header *h, unsigned char *at) {
     unsigned char *p = at + TL_CHUNK_HEAD;
-    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
-        tl_put32(p + 4u * i, r->hash[i]);
-    }
-    tl_state_write(h, p + KEYFRAME_HASHES);
+    uint32_t whole[TL_STATE_COUNT];
+    tl_state_hashes(h, whole);
+    put_words(p, whole, TL_STATE_COUNT);
+    put_words(p + TL_RECORD_HASHES / 2u, r->hash, TL_STATE_COUNT);
+    tl_state_write(h, p + TL_RECORD_HASHES);
     r->keyframes++;
     r->work = 0;
-    return close_chunk(at, TL_CHUNK_KEYFRAME, KEYFRAME_HASHES + tl_state_size(h), r->steps);
+    return close_chunk(at, TL_CHUNK_KEYFRAME, TL_RECORD_HASHES + tl_state_size(h), r->steps);
 }
 
 /* The chunks of all sound hulls of the region from where the last ones were found, or only their bytes if `at` is null.
@@ -118,7 +124,8 @@ static size_t write_hulls(const talus_recorder *r, const talus_world *world, uns
     return size;
 }
 
-#define REST_WORK 16u /* of a step in which nothing is awake, in bodies */
+#define REST_WORK 16u   /* of a step in which nothing is awake, in bodies */
+#define WHOLE_EVERY 64u /* steps between two hashes of the whole */
 
 /* --- the recorder ----------------------------------------------------------------------------- */
 
@@ -141,7 +148,7 @@ static void empty_log(talus_recorder *r, const tl_header *h) {
     r->log.memory = r->memory + STEP_BEFORE;
     r->log.capacity = r->capacity - kept_room(h);
     r->log.used = 0;
-    r->log.steps = r->log.others = r->log.lost = 0;
+    r->log.steps = r->log.others = r->log.flips = r->log.lost = 0;
 }
 
 talus_status talus_recorder_begin(talus_recorder *r, talus_world *world, void *memory, size_t capacity,
@@ -166,13 +173,11 @@ talus_status talus_recorder_begin(talus_recorder *r, talus_world *world, void *m
     talus_world_get_def(world, &def);
     const uint32_t words[5] = {def.body_capacity, def.shape_capacity, def.joint_capacity, def.contact_capacity,
                                def.event_capacity};
-    for (unsigned i = 0; i < 5u; i++) {
-        tl_put32(p + TL_CHUNK_HEAD + 4u * i, words[i]);
-    }
+    put_words(p + TL_CHUNK_HEAD, words, 5);
     p += close_chunk(p, TL_CHUNK_WORLD, sizeof words, 0);
     p += write_hulls(r, world, p);
     r->geometry_bytes = world->geometry_bytes;
-    tl_state_hashes(h, r->hash, TL_STATE_COUNT);
+    tl_state_active_hashes(h, r->hash);
     p += write_keyframe(r, h, p);
     *bytes = r->memory;
     *size = (size_t)(p - r->memory);
@@ -181,21 +186,13 @@ talus_status talus_recorder_begin(talus_recorder *r, talus_world *world, void *m
     return TALUS_OK;
 }
 
-/* Whether nothing that lies still has changed: nothing was awake before and after, and nothing was done. */
-static int all_slept(talus_recorder *r, const tl_header *h) {
-    int still = !h->awake_bodies && !h->awake_contacts && !h->awake_joints && !h->moved_shapes;
-    int slept = still && r->still && r->log.others == 0 && r->log.lost == 0;
-    r->still = still;
-    return slept;
-}
-
-/* Writes the hashes that changed, with their mask; returns the bytes. */
+/* Writes the hashes of what is awake that changed, with their mask; returns the bytes. */
 static size_t write_hashes(talus_recorder *r, const tl_header *h, unsigned char *at) {
-    uint32_t hash[TL_STATE_COUNT], columns = all_slept(r, h) ? TL_STATE_OF_HEADER : TL_STATE_COUNT;
+    uint32_t hash[TL_STATE_COUNT];
     uint64_t mask = 0;
     size_t size = 8;
-    tl_state_hashes(h, hash, columns);
-    for (uint32_t i = 0; i < columns; i++) {
+    tl_state_active_hashes(h, hash);
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
         if (hash[i] != r->hash[i]) {
             mask |= (uint64_t)1 << i;
             tl_put32(at + size, hash[i]);
@@ -213,9 +210,16 @@ static size_t write_step(talus_recorder *r, const tl_header *h) {
     if (r->log.lost) {
         r->log.used = 0; /* what is left would not lead to the same state */
     }
-    tl_put32(at, (uint32_t)r->log.used), tl_put32(at + 4, r->log.lost);
-    size_t bytes = 8u + r->log.used;
+    int whole = r->log.flips || (r->steps + r->log.steps) / WHOLE_EVERY != r->steps / WHOLE_EVERY;
+    tl_put32(at, (uint32_t)r->log.used), tl_put32(at + 4, r->log.lost), tl_put32(at + 8, (uint32_t)whole);
+    size_t bytes = 12u + r->log.used;
     bytes += write_hashes(r, h, at + bytes);
+    if (whole) {
+        uint32_t hash[TL_STATE_COUNT];
+        tl_state_hashes(h, hash);
+        put_words(at + bytes, hash, TL_STATE_COUNT);
+        bytes += sizeof hash;
+    }
     r->steps += r->log.steps;
     r->work += r->log.steps * ((uint64_t)h->awake_bodies + REST_WORK);
     return close_chunk(r->memory, TL_CHUNK_STEP, bytes, r->steps);

@@ -6,9 +6,10 @@
  *
  *   WORLD     capacities: bodies, shapes, joints, contacts, events
  *   HULL      offset in the geometry region, then the blob, its words and half-words lowest byte first
- *   KEYFRAME  the hash of each column, then the state (tl_state_write)
- *   STEP      bytes of the commands, commands lost, the commands, a mask of 64 bits of the columns whose hash is
- *             another than after the step before, these hashes
+ *   KEYFRAME  the hashes of all columns, of the whole and of what is awake, then the state (tl_state_write)
+ *   STEP      bytes of the commands, commands lost, whether the hashes of the whole follow (0, 1), the commands, a mask
+ *             of 64 bits of the columns whose hash of what is awake is another than after the step before, these, and
+ *             the hashes of the whole
  *   END       nothing
  *
  * WORLD comes first and a KEYFRAME with step 0 after it. A STEP that lost commands has a KEYFRAME right behind it. */
@@ -18,7 +19,8 @@
 #include "talus/record.h"
 
 #define TL_RECORD_VERSION 1u
-#define TL_RECORD_HEAD 16u /* bytes */
+#define TL_RECORD_HEAD 16u                             /* bytes */
+#define TL_RECORD_HASHES (8u * (size_t)TL_STATE_COUNT) /* bytes of both kinds of hashes */
 #define TL_CHUNK_HEAD 20u
 
 enum { TL_CHUNK_WORLD = 1, TL_CHUNK_HULL, TL_CHUNK_KEYFRAME, TL_CHUNK_STEP, TL_CHUNK_END, TL_CHUNK_KINDS };

@@ -58,15 +58,15 @@ static uint64_t mask_of(const unsigned char *p) { return (uint64_t)tl_get32(p + 
 
 /* Whether the parts of a step's payload add up to it. */
 static int step_adds_up(const chunk *c) {
-    if (c->bytes < 16u) {
+    if (c->bytes < 20u) {
         return 0;
     }
-    uint32_t used = tl_get32(c->payload), left = c->bytes - 16u;
-    if (used % 4u || used > left) {
+    uint32_t used = tl_get32(c->payload), whole = tl_get32(c->payload + 8), left = c->bytes - 20u;
+    if (used % 4u || used > left || whole > 1u) {
         return 0;
     }
-    uint64_t mask = mask_of(c->payload + 8u + used);
-    return mask >> (TL_STATE_COUNT - 1u) <= 1u && left - used == 4u * bits_of(mask);
+    uint64_t mask = mask_of(c->payload + 12u + used);
+    return mask >> (TL_STATE_COUNT - 1u) <= 1u && left - used == 4u * (bits_of(mask) + whole * TL_STATE_COUNT);
 }
 
 /* Takes in what a chunk says of the whole recording; 0 if it is not in its place. */
@@ -93,7 +93,7 @@ static int look_at(talus_replay *r, const chunk *c) {
     }
     case TL_CHUNK_KEYFRAME:
         r->keyframes++;
-        return begun && c->bytes > 4u * TL_STATE_COUNT && c->steps == r->steps;
+        return begun && c->bytes > TL_RECORD_HASHES && c->steps == r->steps;
     case TL_CHUNK_STEP:
         if (!r->keyframes || !step_adds_up(c) || c->steps < r->steps) {
             return 0;
@@ -170,18 +170,28 @@ static talus_status take_hulls(const talus_replay *r, unsigned char *region) {
     return TALUS_OK;
 }
 
+static void get_words(uint32_t *out, const unsigned char *at) {
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        out[i] = tl_get32(at + 4u * i);
+    }
+}
+
+static void take_hashes(talus_replay *r, const chunk *keyframe) {
+    get_words(r->whole, keyframe->payload);
+    get_words(r->hash, keyframe->payload + TL_RECORD_HASHES / 2u);
+    r->has_whole = 1;
+}
+
 static talus_status take_keyframe(talus_replay *r, talus_world *world, const chunk *c) {
-    const unsigned char *state = c->payload + 4u * TL_STATE_COUNT;
-    if (!tl_state_read(tl_header_of(world), state, c->bytes - 4u * TL_STATE_COUNT)) {
+    const unsigned char *state = c->payload + TL_RECORD_HASHES;
+    if (!tl_state_read(tl_header_of(world), state, c->bytes - TL_RECORD_HASHES)) {
         return TALUS_BAD_BLOB;
     }
     if (talus_world_validate(world) != TALUS_OK) {
         tl_header_of(world)->magic = 0; /* so that no call follows what is not sound */
         return TALUS_BAD_BLOB;
     }
-    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
-        r->hash[i] = tl_get32(c->payload + 4u * i);
-    }
+    take_hashes(r, c);
     r->at = end_of(r, c);
     r->step = c->steps;
     r->commands = NULL;
@@ -239,14 +249,13 @@ int talus_replay_next(talus_replay *r) {
     }
     for (; r->at < r->offset && read_head(r, r->at, &c) == READ; r->at = end_of(r, &c)) {
         if (c.kind == TL_CHUNK_KEYFRAME && c.steps == r->step) { /* of the state before the first step */
-            for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
-                r->hash[i] = tl_get32(c.payload + 4u * i);
-            }
+            take_hashes(r, &c);
         }
         if (c.kind == TL_CHUNK_STEP) {
             r->command_bytes = tl_get32(c.payload);
             r->lost = tl_get32(c.payload + 4);
-            r->commands = c.payload + 8;
+            r->has_whole = tl_get32(c.payload + 8) != 0;
+            r->commands = c.payload + 12;
             const unsigned char *p = r->commands + r->command_bytes;
             uint64_t mask = mask_of(p);
             p += 8;
@@ -254,6 +263,9 @@ int talus_replay_next(talus_replay *r) {
                 if (mask >> i & 1u) {
                     r->hash[i] = tl_get32(p), p += 4;
                 }
+            }
+            if (r->has_whole) {
+                get_words(r->whole, p);
             }
             r->step = c.steps;
             r->at = end_of(r, &c);
@@ -303,15 +315,29 @@ talus_replayed talus_replay_step(talus_replay *r, talus_world *world) {
     return TALUS_REPLAYED_REFUSED;
 }
 
+static uint64_t differing(const uint32_t *a, const uint32_t *b) {
+    uint64_t mask = 0;
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        mask |= (uint64_t)(a[i] != b[i]) << i;
+    }
+    return mask;
+}
+
 uint64_t talus_replay_compare(const talus_replay *r, const talus_world *world) {
     uint32_t hash[TL_STATE_COUNT];
-    uint64_t mask = 0;
     if (!r || !tl_world_is_sound(world)) {
         return ~(uint64_t)0;
     }
-    tl_state_hashes(tl_header_of(world), hash, TL_STATE_COUNT);
-    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
-        mask |= (uint64_t)(hash[i] != r->hash[i]) << i;
+    tl_state_active_hashes(tl_header_of(world), hash);
+    uint64_t mask = differing(hash, r->hash);
+    if (r->has_whole) {
+        tl_state_hashes(tl_header_of(world), hash);
+        mask |= differing(hash, r->whole);
     }
     return mask;
+}
+
+uint64_t talus_replay_differ(const talus_replay *a, const talus_replay *b) {
+    uint64_t mask = differing(a->hash, b->hash);
+    return a->has_whole && b->has_whole ? mask | differing(a->whole, b->whole) : mask;
 }

@@ -43,60 +43,164 @@ tl_live tl_state_rows(const tl_header *h, uint32_t column) {
     return live;
 }
 
-/* --- hashes ----------------------------------------------------------------------------------- */
-
-/* The sum of products of word pairs, each word first moved by a key of its place: the NH of UMAC (Black, Halevi,
- * Krawczyk, Krovetz, Rogaway, CRYPTO 1999, section 4), with keys that count up instead of random ones. A single word
- * that changes changes the sum unless its partner is exactly its key's complement. */
-#define BLOCK_WORDS 8u
-#define KEY_STEP 0x9e3779b1u
-
-typedef struct block_sum {
-    uint64_t sum[4];
-    uint32_t key[BLOCK_WORDS];
-} block_sum;
-
-static void add_block(block_sum *s, const uint32_t w[BLOCK_WORDS]) {
-    for (unsigned k = 0; k < 4u; k++) {
-        s->sum[k] += (uint64_t)(w[k] + s->key[k]) * (uint32_t)(w[k + 4u] + s->key[k + 4u]);
+static talus_row_kind rows_of(const column_info *c) {
+    switch (c->column) {
+    case TL_COLUMN_awake_body:
+    case TL_COLUMN_awake_contact:
+    case TL_COLUMN_awake_joint:
+    case TL_COLUMN_moved_shape:
+        return TALUS_ROW_OF_LIST;
+    default:
+        break;
     }
-    for (unsigned k = 0; k < BLOCK_WORDS; k++) {
-        s->key[k] += KEY_STEP;
+    switch (c->count) {
+    case TL_COUNT_BODY:
+        return TALUS_ROW_OF_BODY;
+    case TL_COUNT_SHAPE:
+        return TALUS_ROW_OF_SHAPE;
+    case TL_COUNT_NODE:
+        return TALUS_ROW_OF_NODE;
+    case TL_COUNT_CONTACT:
+        return TALUS_ROW_OF_CONTACT;
+    case TL_COUNT_JOINT:
+        return TALUS_ROW_OF_JOINT;
+    default:
+        return TALUS_ROW_OF_WORLD;
     }
 }
 
-static uint32_t hash_words(const unsigned char *p, size_t words, uint32_t word) {
-    block_sum s = {{0, 0, 0, 0},
-                   {0x243f6a88u, 0x85a308d3u, 0x13198a2eu, 0x03707344u, 0xa4093822u, 0x299f31d0u, 0x082efa98u,
-                    0xec4e6c89u}}; /* the first digits of pi */
+/* --- hashes ----------------------------------------------------------------------------------- */
+
+/* Sixteen streams of 32 bits, each taking every sixteenth word as h <- 9 rotl(h xor w, 7): four simple operations that
+ * compilers run lanes wide. Every step is one to one in h and in w, so that a single word that changes always changes
+ * its stream. Not for use against an adversary. */
+#define STREAMS 16u
+
+typedef struct streams {
+    uint32_t h[STREAMS];
+} streams;
+
+static streams begin_streams(void) {
+    streams s;
+    for (uint32_t k = 0; k < STREAMS; k++) {
+        s.h[k] = (k + 1u) * 0x9e3779b1u;
+    }
+    return s;
+}
+
+static void add_block(uint32_t h[STREAMS], const uint32_t w[STREAMS]) {
+    for (unsigned k = 0; k < STREAMS; k++) {
+        uint32_t x = h[k] ^ w[k];
+        x = x << 7 | x >> 25;
+        h[k] = x + (x << 3);
+    }
+}
+
+/* The blocks that are full and of words of four bytes: the loop that must be fast. */
+static size_t add_full_blocks(streams *s, const unsigned char *p, size_t words) {
+    uint32_t h[STREAMS], w[STREAMS];
+    size_t i = 0;
+    memcpy(h, s->h, sizeof h);
+    for (; i + STREAMS <= words; i += STREAMS) {
+        memcpy(w, p + 4u * i, sizeof w);
+        add_block(h, w);
+    }
+    memcpy(s->h, h, sizeof h);
+    return i;
+}
+
+/* Adds words, the last sixteen of them filled up with zeros; those of eight bytes lowest half first. */
+static void add_words(streams *s, const unsigned char *p, size_t words, uint32_t word) {
     int swap = word == 8u && tl_is_big_endian();
-    uint32_t w[BLOCK_WORDS];
-    for (size_t i = 0; i < words; i += BLOCK_WORDS) {
-        size_t n = words - i < BLOCK_WORDS ? words - i : BLOCK_WORDS;
-        if (n < BLOCK_WORDS) {
-            memset(w, 0, sizeof w);
-            memcpy(w, p + 4u * i, 4u * n);
-        } else {
-            memcpy(w, p + 4u * i, sizeof w);
-        }
-        for (unsigned k = 0; swap && k < BLOCK_WORDS; k += 2u) {
+    for (size_t i = swap ? 0 : add_full_blocks(s, p, words); i < words; i += STREAMS) {
+        uint32_t w[STREAMS] = {0};
+        memcpy(w, p + 4u * i, 4u * (words - i < STREAMS ? words - i : STREAMS));
+        for (unsigned k = 0; swap && k < STREAMS; k += 2u) {
             uint32_t high = w[k];
             w[k] = w[k + 1u], w[k + 1u] = high;
         }
-        add_block(&s, w);
+        add_block(s->h, w);
     }
+}
+
+static uint32_t end_streams(const streams *s, size_t words) {
     uint64_t h = words;
-    for (unsigned k = 0; k < 4u; k++) {
-        h = (h ^ s.sum[k]) * 0x9e3779b97f4a7c15u;
+    for (unsigned k = 0; k < STREAMS; k++) {
+        h = (h ^ s->h[k]) * 0x9e3779b97f4a7c15u;
         h ^= h >> 32;
     }
     return (uint32_t)h;
 }
 
-void tl_state_hashes(const tl_header *h, uint32_t *out, uint32_t columns) {
-    for (uint32_t i = 0; i < columns; i++) {
-        tl_live live = tl_state_rows(h, i);
-        out[i] = hash_words(live.data, (size_t)live.rows * live.row_bytes / 4u, COLUMNS[i].word);
+static uint32_t hash_column(const tl_header *h, uint32_t column) {
+    tl_live live = tl_state_rows(h, column);
+    streams s = begin_streams();
+    size_t words = (size_t)live.rows * live.row_bytes / 4u;
+    add_words(&s, live.data, words, COLUMNS[column].word);
+    return end_streams(&s, words);
+}
+
+void tl_state_hashes(const tl_header *h, uint32_t out[TL_STATE_COUNT]) {
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        out[i] = hash_column(h, i);
+    }
+}
+
+#define BATCH_BYTES 4096u
+
+/* Puts the rows that a list names one after another. */
+static void gather(unsigned char *to, const tl_live *from, const uint32_t *list, uint32_t count) {
+#define GATHER(bytes)                                                                                                  \
+    case bytes:                                                                                                        \
+        for (uint32_t k = 0; k < count; k++) {                                                                         \
+            memcpy(to + (size_t)k * (bytes), from->data + (size_t)list[k] * (bytes), bytes);                           \
+        }                                                                                                              \
+        break;
+    switch (from->row_bytes) { /* copies of a length that the compiler knows */
+        GATHER(4)
+        GATHER(8)
+        GATHER(16)
+        GATHER(32)
+        GATHER(128)
+    default:
+        for (uint32_t k = 0; k < count; k++) {
+            memcpy(to + (size_t)k * from->row_bytes, from->data + (size_t)list[k] * from->row_bytes, from->row_bytes);
+        }
+        break;
+    }
+#undef GATHER
+}
+
+static uint32_t hash_listed_rows(const tl_header *h, uint32_t column, const uint32_t *list, uint32_t count) {
+    unsigned char batch[BATCH_BYTES];
+    tl_live live = tl_state_rows(h, column);
+    streams s = begin_streams();
+    uint32_t most = BATCH_BYTES / live.row_bytes;
+    for (uint32_t k = 0; k < count; k += most) {
+        uint32_t n = count - k < most ? count - k : most;
+        gather(batch, &live, list + k, n);
+        add_words(&s, batch, (size_t)n * live.row_bytes / 4u, COLUMNS[column].word);
+    }
+    return end_streams(&s, count);
+}
+
+void tl_state_active_hashes(const tl_header *h, uint32_t out[TL_STATE_COUNT]) {
+    int sleeps = !h->awake_bodies && !h->moved_shapes;
+    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
+        talus_row_kind rows = rows_of(&COLUMNS[i]);
+        if (rows == TALUS_ROW_OF_WORLD || rows == TALUS_ROW_OF_LIST) {
+            out[i] = hash_column(h, i);
+        } else if (COLUMNS[i].stage == TALUS_STAGE_COMMANDS) {
+            out[i] = 0;
+        } else if (rows == TALUS_ROW_OF_BODY) {
+            out[i] = hash_listed_rows(h, i, tl_awake_body(h), h->awake_bodies);
+        } else if (rows == TALUS_ROW_OF_CONTACT) {
+            out[i] = hash_listed_rows(h, i, tl_awake_contact(h), h->awake_contacts);
+        } else if (rows == TALUS_ROW_OF_JOINT) {
+            out[i] = hash_listed_rows(h, i, tl_awake_joint(h), h->awake_joints);
+        } else {
+            out[i] = sleeps ? 0 : hash_column(h, i);
+        }
     }
 }
 
@@ -188,32 +292,6 @@ uint32_t tl_state_layout(void) {
 }
 
 /* --- columns ---------------------------------------------------------------------------------- */
-
-static talus_row_kind rows_of(const column_info *c) {
-    switch (c->column) {
-    case TL_COLUMN_awake_body:
-    case TL_COLUMN_awake_contact:
-    case TL_COLUMN_awake_joint:
-    case TL_COLUMN_moved_shape:
-        return TALUS_ROW_OF_LIST;
-    default:
-        break;
-    }
-    switch (c->count) {
-    case TL_COUNT_BODY:
-        return TALUS_ROW_OF_BODY;
-    case TL_COUNT_SHAPE:
-        return TALUS_ROW_OF_SHAPE;
-    case TL_COUNT_NODE:
-        return TALUS_ROW_OF_NODE;
-    case TL_COUNT_CONTACT:
-        return TALUS_ROW_OF_CONTACT;
-    case TL_COUNT_JOINT:
-        return TALUS_ROW_OF_JOINT;
-    default:
-        return TALUS_ROW_OF_WORLD;
-    }
-}
 
 uint32_t talus_column_count(void) { return TL_STATE_COUNT; }
 

@@ -23,10 +23,11 @@ typedef enum tl_state_id {
 /* The rows in use. */
 tl_live tl_state_rows(const tl_header *h, uint32_t column);
 
-/* A 32-bit hash of each of the first `columns` columns, the same in either byte order. One pass over the rows in use.
- */
-#define TL_STATE_OF_HEADER 2u
-void tl_state_hashes(const tl_header *h, uint32_t *out, uint32_t columns);
+/* A 32-bit hash of each column, the same in either byte order. One pass over the rows in use. */
+void tl_state_hashes(const tl_header *h, uint32_t out[TL_STATE_COUNT]);
+/* The same of what a step may have changed: the rows of bodies, contacts and joints that are awake; 0 for the columns
+ * that commands write and, where nothing is awake, for those of boxes. One pass over the rows that are awake. */
+void tl_state_active_hashes(const tl_header *h, uint32_t out[TL_STATE_COUNT]);
 
 /* The state as bytes, every member lowest byte first. tl_state_read changes nothing and returns 0 unless the bytes are
  * the state of a world of these capacities; whether it is sound is for talus_world_validate to say. */

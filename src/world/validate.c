@@ -281,17 +281,35 @@ static int free_list_is_sound(const tl_header *h, const tl_pool *pool, tl_count 
     return count == pool->high - pool->used && alive == pool->used;
 }
 
+/* A number for an index; sums of them are equal for the same indices in any order, and hardly for others. */
+static uint64_t scatter(uint32_t i) {
+    uint64_t x = (i + 1u) * (uint64_t)0x9e3779b97f4a7c15u;
+    x = (x ^ x >> 31) * 0xbf58476d1ce4e5b9u;
+    return x ^ x >> 29;
+}
+
+/* Whether the list of moved shapes has every one that says it is in it, once. */
+static int moved_list_is_sound(const tl_header *h) {
+    uint64_t said = 0, listed = 0;
+    for (uint32_t i = 0; i < h->shapes.high; i++) {
+        said += tl_shapes(h)[i].flags & TL_SHAPE_MOVED ? scatter(i) : 0;
+    }
+    for (uint32_t k = 0; k < h->moved_shapes; k++) {
+        listed += scatter(tl_moved_shape(h)[k]);
+    }
+    return said == listed;
+}
+
 static int counts_are_sound(const tl_header *h) {
-    uint32_t events = 0, moved = 0, breaking = 0;
+    uint32_t events = 0, breaking = 0;
     for (uint32_t i = 0; i < h->shapes.high; i++) {
         events += (tl_shapes(h)[i].flags & (TL_SHAPE_SENSOR | TL_SHAPE_EVENTS)) != 0;
-        moved += (tl_shapes(h)[i].flags & TL_SHAPE_MOVED) != 0;
     }
     for (uint32_t i = 0; i < h->joints.high; i++) {
         const tl_joint_record *j = &tl_joints(h)[i];
         breaking += (j->flags & TL_JOINT_ALIVE) && (j->break_force > 0.0f || j->break_torque > 0.0f);
     }
-    return events == h->event_shapes && moved == h->moved_shapes && breaking == h->breaking_joints &&
+    return events == h->event_shapes && moved_list_is_sound(h) && breaking == h->breaking_joints &&
            free_list_is_sound(h, &h->bodies, TL_COUNT_BODY) && free_list_is_sound(h, &h->shapes, TL_COUNT_SHAPE) &&
            free_list_is_sound(h, &h->nodes, TL_COUNT_NODE) && free_list_is_sound(h, &h->contacts, TL_COUNT_CONTACT) &&
            free_list_is_sound(h, &h->joints, TL_COUNT_JOINT);

@@ -111,7 +111,7 @@ static void strange_bytes_are_refused(void **state) {
 static void log_takes_what_was_done(void **state) {
     (void)state;
     unsigned char memory[300];
-    talus_log log = {memory, sizeof memory, 0, 0, 0, 0};
+    talus_log log = {memory, sizeof memory, 0, 0, 0, 0, 0};
     talus_world_def def = kit_small();
     talus_world world = kit_world(&def);
     world.log = &log;

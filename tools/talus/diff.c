@@ -14,15 +14,6 @@ enum { HELP = VERDICT_OPTION_COUNT };
 static const struct option long_options[] = {
     VERDICT_LONG_OPTIONS, {"help", no_argument, NULL, HELP}, {NULL, 0, NULL, 0}};
 
-/* The columns whose recorded hashes differ. */
-static uint64_t differing(const talus_replay *a, const talus_replay *b) {
-    uint64_t columns = 0;
-    for (uint32_t i = 0; i < talus_column_count(); i++) {
-        columns |= (uint64_t)(a->hash[i] != b->hash[i]) << i;
-    }
-    return columns;
-}
-
 /* The next command of a step that is not a flip, which is an error and no command: 0 if there is none. */
 static size_t next_command(const talus_replay *r, size_t *at, talus_command *out) {
     size_t used;
@@ -67,6 +58,8 @@ static void tell_hashes(verdict *v, const recording *a, const recording *b, uint
 static void tell_values(verdict *v, const recording *a, const recording *b) {
     char commands[128], where[512];
     int differ = commands_differ(&a->replay, &b->replay, commands, sizeof commands);
+    v->status = TOOL_DIVERGED;
+    v->step = a->replay.step;
     v->has_values = talus_world_part(&a->world, &b->world, differ, &v->parting) == 1;
     v->column = v->parting.column;
     v->columns = v->parting.columns;
@@ -74,49 +67,56 @@ static void tell_values(verdict *v, const recording *a, const recording *b) {
     snprintf(v->text, sizeof v->text, "%s%s", where, commands);
 }
 
-/* Brings world a to the step that both have in common, from the last keyframe; 0 with the reason in `why` if it is not
- * the recorded state there. */
-static int go_to(recording *a, uint32_t step, char *why, size_t room) {
-    uint64_t columns = talus_replay_seek(&a->replay, &a->world, step) == TALUS_OK ? 0 : 1;
-    while (columns == 0 && a->replay.step < step && talus_replay_step(&a->replay, &a->world) != TALUS_REPLAYED_END) {
-        columns = talus_replay_compare(&a->replay, &a->world);
-    }
-    if (columns == 0) {
-        return 1;
-    }
+/* Says in `why` that a recording cannot be followed here; returns 0. */
+static int is_not_true(const recording *r, uint64_t columns, char *why, size_t room) {
     talus_column column;
     talus_column_get(talus_column_first(columns, 0), &column);
     snprintf(why, room,
              "; of its values nothing is known: here %s replays otherwise than recorded from step %" PRIu32 " on, %s",
-             a->path, a->replay.step, column.name);
+             r->path, r->replay.step, column.name);
     return 0;
 }
 
-/* The recorded hashes part at the step that both replays stand at; `before` is b's before it. */
-static void explain(verdict *v, recording *a, recording *b, const talus_replay *before) {
-    char why[512];
-    talus_replay at = a->replay;
-    uint64_t columns = differing(&a->replay, &b->replay);
-    tell_hashes(v, a, b, columns, "");
-    if (!go_to(a, before->step, why, sizeof why)) {
-        a->replay = at;
-        tell_hashes(v, a, b, columns, why);
-        return;
+/* Does the next step; 0 with the reason in `why` if the state is not the recorded one. */
+static int follow(recording *r, char *why, size_t room) {
+    talus_replay_step(&r->replay, &r->world);
+    uint64_t columns = talus_replay_compare(&r->replay, &r->world);
+    return columns == 0 ? 1 : is_not_true(r, columns, why, room);
+}
+
+/* Brings both worlds from `sure`, a step after which the whole states are known to be the same, to the first that
+ * parts, at the latest `step`; 0 with the reason in `why` if they cannot be followed. */
+static int go_to_parting(recording *a, recording *b, const talus_replay *sure, uint32_t step, char *why, size_t room) {
+    talus_parting parting;
+    if (talus_replay_seek(&a->replay, &a->world, sure->step) != TALUS_OK) {
+        return is_not_true(a, 1, why, room);
     }
-    /* b was in the same state: its hashes say so. */
+    while (a->replay.step < sure->step) {
+        if (!follow(a, why, room)) {
+            return 0;
+        }
+    }
     memcpy(b->world.block, a->world.block, a->block_bytes);
-    b->replay = *before;
-    talus_replay_step(&a->replay, &a->world);
-    talus_replay_step(&b->replay, &b->world);
-    int a_is_true = talus_replay_compare(&a->replay, &a->world) == 0;
-    int b_is_true = talus_replay_compare(&b->replay, &b->world) == 0;
-    if (a_is_true && b_is_true) {
+    b->replay = *sure;
+    do {
+        if (!follow(a, why, room) || !follow(b, why, room)) {
+            return 0;
+        }
+    } while (talus_world_part(&a->world, &b->world, 0, &parting) == 0 && a->replay.step < step);
+    return 1;
+}
+
+/* The recorded hashes part where both replays stand. */
+static void explain(verdict *v, recording *a, recording *b, const talus_replay *sure) {
+    char why[512];
+    talus_replay at_a = a->replay, at_b = b->replay;
+    if (go_to_parting(a, b, sure, at_a.step, why, sizeof why)) {
+        v->steps = a->replay.step - 1;
         tell_values(v, a, b);
         return;
     }
-    snprintf(why, sizeof why, "; of its values nothing is known: here %s%s%s replays otherwise than recorded",
-             a_is_true ? "" : a->path, a_is_true || b_is_true ? "" : " as well as ", b_is_true ? "" : b->path);
-    tell_hashes(v, a, b, columns, why);
+    a->replay = at_a, b->replay = at_b;
+    tell_hashes(v, a, b, talus_replay_differ(&at_a, &at_b), why);
 }
 
 static void compare(recording *a, recording *b, verdict *v) {
@@ -126,13 +126,11 @@ static void compare(recording *a, recording *b, verdict *v) {
                  a->path, b->path);
         return;
     }
-    if (differing(&a->replay, &b->replay) != 0) {
-        tell_hashes(v, a, b, differing(&a->replay, &b->replay), "");
+    if (talus_replay_differ(&a->replay, &b->replay) != 0) {
         tell_values(v, a, b);
         return;
     }
-    for (;;) {
-        talus_replay before = b->replay;
+    for (talus_replay sure = b->replay;;) {
         int more_a = talus_replay_next(&a->replay), more_b = talus_replay_next(&b->replay);
         if (!more_a || !more_b) {
             break;
@@ -143,11 +141,12 @@ static void compare(recording *a, recording *b, verdict *v) {
                      a->path, b->path);
             return;
         }
-        if (differing(&a->replay, &b->replay) != 0) {
-            explain(v, a, b, &before);
+        if (talus_replay_differ(&a->replay, &b->replay) != 0) {
+            explain(v, a, b, &sure);
             return;
         }
         v->steps = a->replay.step;
+        sure = a->replay.has_whole && b->replay.has_whole ? b->replay : sure;
     }
     int same = a->replay.steps == b->replay.steps && !a->replay.cut && !b->replay.cut;
     v->status = same ? 0 : TOOL_SHORTER;
