@@ -67,56 +67,72 @@ static void tell_values(verdict *v, const recording *a, const recording *b) {
     snprintf(v->text, sizeof v->text, "%s%s", where, commands);
 }
 
-/* Says in `why` that a recording cannot be followed here; returns 0. */
-static int is_not_true(const recording *r, uint64_t columns, char *why, size_t room) {
+/* Says in `why` that a recording cannot be followed here. */
+static void is_not_true(const recording *r, uint64_t columns, char *why, size_t room) {
     talus_column column;
     talus_column_get(talus_column_first(columns, 0), &column);
     snprintf(why, room,
              "; of its values nothing is known: here %s replays otherwise than recorded from step %" PRIu32 " on, %s",
              r->path, r->replay.step, column.name);
-    return 0;
 }
 
 /* Does the next step; 0 with the reason in `why` if the state is not the recorded one. */
 static int follow(recording *r, char *why, size_t room) {
     talus_replay_step(&r->replay, &r->world);
     uint64_t columns = talus_replay_compare(&r->replay, &r->world);
-    return columns == 0 ? 1 : is_not_true(r, columns, why, room);
+    if (columns != 0) {
+        is_not_true(r, columns, why, room);
+    }
+    return columns == 0;
 }
 
+typedef enum search { SEARCH_PARTED, SEARCH_SAME, SEARCH_LOST } search;
+
 /* Brings both worlds from `sure`, a step after which the whole states are known to be the same, to the first that
- * parts, at the latest `step`; 0 with the reason in `why` if they cannot be followed. */
-static int go_to_parting(recording *a, recording *b, const talus_replay *sure, uint32_t step, char *why, size_t room) {
+ * parts, at the latest `step`. SEARCH_LOST with the reason in `why` if they cannot be followed. */
+static search go_to_parting(recording *a, recording *b, const talus_replay *sure, uint32_t step, char *why,
+                            size_t room) {
     talus_parting parting;
+    int parts = 0;
     if (talus_replay_seek(&a->replay, &a->world, sure->step) != TALUS_OK) {
-        return is_not_true(a, 1, why, room);
+        is_not_true(a, 1, why, room);
+        return SEARCH_LOST;
     }
     while (a->replay.step < sure->step) {
         if (!follow(a, why, room)) {
-            return 0;
+            return SEARCH_LOST;
         }
     }
     memcpy(b->world.block, a->world.block, a->block_bytes);
     b->replay = *sure;
-    do {
+    while (!parts && a->replay.step < step) {
         if (!follow(a, why, room) || !follow(b, why, room)) {
-            return 0;
+            return SEARCH_LOST;
         }
-    } while (talus_world_part(&a->world, &b->world, 0, &parting) == 0 && a->replay.step < step);
-    return 1;
+        parts = talus_world_part(&a->world, &b->world, 0, &parting) == 1;
+    }
+    return parts ? SEARCH_PARTED : SEARCH_SAME;
 }
 
-/* The recorded hashes part where both replays stand. */
-static void explain(verdict *v, recording *a, recording *b, const talus_replay *sure) {
-    char why[512];
+/* Looks for the values that part up to where both replays stand; 1 if they were found or, since the recorded hashes
+ * part there, told without. */
+static int explain(verdict *v, recording *a, recording *b, const talus_replay *sure) {
+    char why[512] = "";
     talus_replay at_a = a->replay, at_b = b->replay;
-    if (go_to_parting(a, b, sure, at_a.step, why, sizeof why)) {
+    uint64_t columns = talus_replay_differ(&at_a, &at_b);
+    if (columns == 0 && at_a.step == sure->step) {
+        return 0;
+    }
+    if (go_to_parting(a, b, sure, at_a.step, why, sizeof why) == SEARCH_PARTED) {
         v->steps = a->replay.step - 1;
         tell_values(v, a, b);
-        return;
+        return 1;
     }
     a->replay = at_a, b->replay = at_b;
-    tell_hashes(v, a, b, talus_replay_differ(&at_a, &at_b), why);
+    if (columns != 0) {
+        tell_hashes(v, a, b, columns, why);
+    }
+    return columns != 0;
 }
 
 static void compare(recording *a, recording *b, verdict *v) {
@@ -131,8 +147,13 @@ static void compare(recording *a, recording *b, verdict *v) {
         return;
     }
     for (talus_replay sure = b->replay;;) {
+        talus_replay last_a = a->replay, last_b = b->replay;
         int more_a = talus_replay_next(&a->replay), more_b = talus_replay_next(&b->replay);
         if (!more_a || !more_b) {
+            a->replay = last_a, b->replay = last_b;
+            if (explain(v, a, b, &sure)) { /* since the last hashes of the whole state */
+                return;
+            }
             break;
         }
         if (a->replay.step != b->replay.step) {
@@ -141,8 +162,9 @@ static void compare(recording *a, recording *b, verdict *v) {
                      a->path, b->path);
             return;
         }
-        if (talus_replay_differ(&a->replay, &b->replay) != 0) {
-            explain(v, a, b, &sure);
+        /* A recording of the whole state out of turn had a reason. */
+        int suspicious = a->replay.has_whole != b->replay.has_whole;
+        if ((talus_replay_differ(&a->replay, &b->replay) != 0 || suspicious) && explain(v, a, b, &sure)) {
             return;
         }
         v->steps = a->replay.step;
