@@ -25,8 +25,8 @@ tl_live tl_state_rows(const tl_header *h, uint32_t column);
 
 /* A 32-bit hash of each column, the same in either byte order. One pass over the rows in use. */
 void tl_state_hashes(const tl_header *h, uint32_t out[TL_STATE_COUNT]);
-/* The same of what a step may have changed: the rows of bodies, contacts and joints that are awake; 0 for the columns
- * that commands write and, where nothing is awake, for those of boxes. One pass over the rows that are awake. */
+/* The same of what a step may have changed: the rows of bodies, contacts and joints that are awake, or all rows where
+ * half of them are; 0 for the columns that commands write and, where nothing is awake, for those of boxes. */
 void tl_state_active_hashes(const tl_header *h, uint32_t out[TL_STATE_COUNT]);
 
 /* The state as bytes, every member lowest byte first. tl_state_read changes nothing and returns 0 unless the bytes are
