@@ -1,19 +1,13 @@
 /* The tool's record, replay and diff: what is planted is found and told in every form, what is broken is named. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-/* cmocka needs the four above. */
-#include <cmocka.h>
+#include "record_kit.h"
 
 #include <getopt.h>
+#include <stdio.h>
 
 #include "host/file.h"
-#include "talus/talus.h"
 #include "talus/tool.h"
+#include "world/command.h"
+#include "world/record.h"
 
 #define A "diff_test_a.tmp"
 #define B "diff_test_b.tmp"
@@ -151,6 +145,72 @@ static void trouble_is_named(void **state) {
     free(bytes);
 }
 
+/* Records 40 steps of a box and a ball on a floor; a push at a step if that is not 0. */
+static void record_pushed(tape *t, uint32_t pushed) {
+    talus_world_def def = kit_small();
+    talus_world world = kit_world(&def);
+    kit_floor(&world);
+    kit_box(&world, kit_vec(0.0f, 0.5f, 0.0f), 0.5f);
+    talus_body ball = kit_ball(&world, kit_vec(3.0f, 2.0f, 0.0f), 0.4f);
+    tape_begin(t, &world, 4096);
+    for (uint32_t step = 1; step <= 40; step++) {
+        if (step == pushed) {
+            OK(talus_body_apply_impulse(&world, ball, kit_vec(1.0f, 0.0f, 0.0f), kit_vec(3.0f, 2.0f, 0.0f)));
+        }
+        tape_step(t, &world);
+    }
+    tape_end(t, &world);
+    kit_end(&world);
+}
+
+static void other_commands_are_named(void **state) {
+    (void)state;
+    tape a, b;
+    record_pushed(&a, 0);
+    record_pushed(&b, 17);
+    write_bytes(A, (const char *)a.bytes, a.size);
+    write_bytes(B, (const char *)b.bytes, b.size);
+    remove(SUMMARY);
+    assert_int_equal(run(tool_diff, "diff " A " " B " --quiet --summary " SUMMARY), TOOL_DIVERGED);
+    has(SUMMARY, "| first step that parts | 17 |");
+    has(SUMMARY, "its commands differ: world_step and body_apply_impulse");
+    has(SUMMARY, "of body 2");
+    tape_free(&a);
+    tape_free(&b);
+}
+
+/* A recording of a machine that errs: one hash of step 23 is another, all checksums are right. */
+static void machines_that_err_are_named(void **state) {
+    (void)state;
+    tape a;
+    record_pushed(&a, 0);
+    write_bytes(A, (const char *)a.bytes, a.size);
+    for (size_t at = TL_RECORD_HEAD; at < a.size;) {
+        unsigned char *chunk = a.bytes + at, *payload = chunk + TL_CHUNK_HEAD;
+        uint32_t bytes = tl_get32(chunk + 4);
+        if (tl_get32(chunk) == TL_CHUNK_STEP && tl_get32(chunk + 8) == 23u) {
+            unsigned char *mask = payload + 12u + tl_get32(payload);
+            assert_true(tl_get32(mask) & 8u); /* body_velocity, after counts and body_pose */
+            mask[8u + 4u * 2u] ^= 1u;
+            tl_put32(chunk + 12, tl_record_checksum(payload, bytes));
+            tl_put32(chunk + 16, tl_record_checksum(chunk, 16));
+        }
+        at += TL_CHUNK_HEAD + bytes;
+    }
+    write_bytes(B, (const char *)a.bytes, a.size);
+    remove(SUMMARY);
+    assert_int_equal(run(tool_replay, "replay " B " --quiet --summary " SUMMARY), TOOL_DIVERGED);
+    has(SUMMARY, "| first step that parts | 23 |");
+    has(SUMMARY, "| stage | commit |");
+    has(SUMMARY, "| column | body_velocity |");
+    remove(SUMMARY);
+    assert_int_equal(run(tool_diff, "diff " A " " B " --quiet --summary " SUMMARY), TOOL_DIVERGED);
+    has(SUMMARY, "| first step that parts | 23 |");
+    has(SUMMARY, "| column | body_velocity |");
+    has(SUMMARY, "here " B " replays otherwise than recorded from step 23 on, body_velocity");
+    tape_free(&a);
+}
+
 static int clean_up(void **state) {
     (void)state;
     remove(A);
@@ -165,6 +225,8 @@ int main(void) {
         cmocka_unit_test(finds_what_is_planted),
         cmocka_unit_test(same_runs_are_the_same),
         cmocka_unit_test(trouble_is_named),
+        cmocka_unit_test(other_commands_are_named),
+        cmocka_unit_test(machines_that_err_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, clean_up);
 }
