@@ -87,7 +87,7 @@ talus_status talus_recorder_begin(talus_recorder *recorder, talus_world *world, 
                                   const void **bytes, size_t *size);
 /* To be called after every step. One pass over what is awake, and over the whole state every 64 steps. If commands did
  * not fit the memory or the world was restored, the step is recorded by its outcome. TALUS_SMALL_BLOCK if hulls were
- * added for which there is no room. */
+ * added that do not fit the room for commands; nothing is lost then. */
 talus_status talus_recorder_step(talus_recorder *recorder, talus_world *world, const void **bytes, size_t *size);
 /* Ends, with the commands since the last step, and takes the log off. */
 talus_status talus_recorder_end(talus_recorder *recorder, talus_world *world, const void **bytes, size_t *size);

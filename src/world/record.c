@@ -230,15 +230,16 @@ talus_status talus_recorder_step(talus_recorder *r, talus_world *world, const vo
         return TALUS_BAD_ARGUMENT;
     }
     const tl_header *h = tl_header_of(world);
+    int grown = world->geometry_bytes > r->geometry_bytes;
+    if (grown && write_hulls(r, world, NULL) > r->log.capacity - r->log.used) {
+        return TALUS_SMALL_BLOCK;
+    }
     size_t used = write_step(r, h);
     if (r->log.lost || r->work >= r->keyframe_work) {
         r->gaps += r->log.lost != 0;
         used += write_keyframe(r, h, r->memory + used);
     }
-    if (world->geometry_bytes > r->geometry_bytes) {
-        if (write_hulls(r, world, NULL) > r->capacity - used) {
-            return TALUS_SMALL_BLOCK;
-        }
+    if (grown) {
         used += write_hulls(r, world, r->memory + used);
         r->geometry_bytes = world->geometry_bytes;
     }

@@ -301,6 +301,16 @@ static void hulls_come_later(void **state) {
     }
     hashes[40] = talus_world_hash(&p.world);
     tape_end(&t, &p.world);
+    /* Where there is no room for them the step is told to have failed. */
+    tape narrow;
+    const void *bytes;
+    size_t size;
+    p.world.geometry_bytes = hull_bytes;
+    tape_begin(&narrow, &p.world, 64);
+    p.world.geometry_bytes = 4u * hull_bytes;
+    OK(talus_world_step(&p.world, 0.01f, NULL, NULL));
+    assert_int_equal(talus_recorder_step(&narrow.recorder, &p.world, &bytes, &size), TALUS_SMALL_BLOCK);
+    tape_free(&narrow);
     player q;
     OK(player_open(&q, t.bytes, t.size));
     assert_int_equal(q.replay.geometry_bytes, 4u * hull_bytes);
