@@ -1,4 +1,5 @@
 /* talus record: runs a scene and writes what was done to its world. */
+#define _POSIX_C_SOURCE 200809L
 #include "host/clock.h"
 #include "source.h"
 #include "tool.h"
@@ -8,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define COMMAND_BYTES 65536u /* of a step */
 
@@ -160,13 +162,15 @@ static int record_file(taping *t) {
         free(memory);
         return tool_fail(GLTF_FAILED, "%s: %s", t->options->out, strerror(errno));
     }
+    struct stat about;
+    int is_file = fstat(fileno(t->file), &about) == 0 && S_ISREG(about.st_mode);
     talus_status begun = talus_recorder_begin(&t->recorder, world, memory, room, &bytes, &size);
     int status = begun == TALUS_OK ? append(t, bytes, size) : tool_fail(GLTF_FAILED, "%s", talus_status_text(begun));
     status = status == 0 ? record_steps(t) : status;
     if (fclose(t->file) != 0 && status == 0) {
         status = tool_fail(GLTF_FAILED, "%s: %s", t->options->out, strerror(errno));
     }
-    if (status != 0) {
+    if (status != 0 && is_file) {
         remove(t->options->out); /* nothing half-written stays */
     }
     free(memory);
