@@ -3,12 +3,14 @@
 #define TALUS_H
 
 #include "talus/body.h"
+#include "talus/command.h"
 #include "talus/events.h"
 #include "talus/hull.h"
 #include "talus/joint.h"
 #include "talus/loop.h"
-#include "talus/rollback.h"
 #include "talus/profile.h"
+#include "talus/record.h"
+#include "talus/rollback.h"
 #include "talus/shape.h"
 #include "talus/snapshot.h"
 #include "talus/types.h"

@@ -25,12 +25,15 @@ typedef enum talus_isa {
 int talus_isa_available(talus_isa isa);
 const char *talus_isa_name(talus_isa isa);
 
+typedef struct talus_log talus_log; /* command.h */
+
 /* A world as the caller holds it: the block, and the region of cooked hulls that its shapes refer to by offset. Neither
  * holds a pointer, so both may be copied; a copy of the block is the same world again. */
 typedef struct talus_world {
     void *block;
     const void *geometry;  /* TALUS_BLOB_ALIGNMENT aligned; may be null without hulls; is never written */
     size_t geometry_bytes; /* may grow, must not shrink while shapes refer to it */
+    talus_log *log;        /* what is done to the world is added to it; null: none is kept */
 } talus_world;
 
 typedef struct talus_world_def {
@@ -68,7 +71,7 @@ talus_world_def talus_world_def_default(void);
 /* Bytes of the block that talus_world_init needs; 0 if the definition is out of range. */
 size_t talus_world_size(const talus_world_def *def);
 
-/* Makes an empty world in `block` (TALUS_BLOCK_ALIGNMENT aligned) and fills in *world with no geometry.
+/* Makes an empty world in `block` (TALUS_BLOCK_ALIGNMENT aligned) and fills in *world with no geometry and no log.
  * TALUS_BAD_ARGUMENT, TALUS_NOT_FINITE, TALUS_SMALL_BLOCK, TALUS_UNALIGNED, TALUS_NO_ISA. */
 talus_status talus_world_init(talus_world *world, const talus_world_def *def, void *block, size_t bytes);
 

@@ -7,6 +7,7 @@
 #include "base/trig.h"
 #include "stage/broad/refit.h"
 #include "stage/island/islands.h"
+#include "world/command.h"
 #include "world/world_internal.h"
 
 talus_body_def talus_body_def_default(void) {
@@ -60,30 +61,22 @@ static void note_kinematic(tl_header *h, uint32_t i) {
     }
 }
 
-talus_status talus_body_create(talus_world *world, const talus_body_def *def, talus_body *out) {
-    if (!tl_world_is_sound(world) || !def || !out) {
-        return TALUS_BAD_ARGUMENT;
-    }
+talus_status tl_run_body_create(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_body_def *def = &c->as.body;
     talus_status status = check_def(def);
     if (status != TALUS_OK) {
         return status;
     }
     tl_header *h = tl_header_of(world);
-    uint32_t i = tl_pool_top(&h->bodies, h->capacity[TL_COUNT_BODY]);
+    i = tl_pool_top(&h->bodies, h->capacity[TL_COUNT_BODY]);
     if (i == TL_NONE) {
         return TALUS_FULL_BODIES;
     }
     tl_body_meta *meta = &tl_bodies(h)[i];
-    if (i == h->bodies.free) {
-        h->bodies.free = meta->free_next;
-    } else {
-        h->bodies.high++;
-    }
-    h->bodies.used++;
-    h->bodies.peak = h->bodies.used > h->bodies.peak ? h->bodies.used : h->bodies.peak;
-    uint32_t generation = meta->generation + 1u;
+    tl_pool_take(&h->bodies, i, meta->free_next);
+    uint32_t generation = tl_next_generation(meta->generation);
     memset(meta, 0, sizeof *meta);
-    meta->generation = generation ? generation : 1u;
+    meta->generation = generation;
     meta->flags =
         (uint32_t)def->type | TL_BODY_ALIVE | (def->can_sleep ? TL_BODY_CAN_SLEEP : 0u) | def->locks << TL_BODY_LOCKS;
     meta->first_shape = meta->first_joint = meta->island = meta->free_next = TL_NONE;
@@ -118,16 +111,12 @@ talus_status talus_body_create(talus_world *world, const talus_body_def *def, ta
     } else if (def->type == TALUS_KINEMATIC) {
         note_kinematic(h, i);
     }
-    out->index = i, out->generation = meta->generation;
+    c->index = i, c->generation = generation;
     return TALUS_OK;
 }
 
-talus_status talus_body_destroy(talus_world *world, talus_body body) {
-    uint32_t i;
-    talus_status status = tl_find_body(world, body, &i);
-    if (status != TALUS_OK) {
-        return status;
-    }
+talus_status tl_run_body_destroy(talus_world *world, uint32_t i, talus_command *c) {
+    (void)c;
     if (i == 0) {
         return TALUS_BAD_ARGUMENT; /* the ground stays */
     }
@@ -201,12 +190,9 @@ talus_status talus_body_get_interpolated_pose(const talus_world *world, talus_bo
     return TALUS_OK;
 }
 
-talus_status talus_body_set_pose(talus_world *world, talus_body body, const talus_pose *pose) {
-    uint32_t i;
-    talus_status status = pose ? tl_find_body(world, body, &i) : TALUS_BAD_ARGUMENT;
-    if (status == TALUS_OK) {
-        status = tl_check_pose(pose);
-    }
+talus_status tl_run_body_set_pose(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_pose *pose = &c->as.pose;
+    talus_status status = tl_check_pose(pose);
     if (status != TALUS_OK) {
         return status;
     }
@@ -226,55 +212,10 @@ talus_status talus_body_set_pose(talus_world *world, talus_body body, const talu
     return TALUS_OK;
 }
 
-talus_status talus_body_move_to(talus_world *world, talus_body body, const talus_pose *pose, float dt) {
-    uint32_t i;
-    talus_status status = pose ? tl_find_body(world, body, &i) : TALUS_BAD_ARGUMENT;
-    if (status != TALUS_OK) {
-        return status;
-    }
-    tl_header *h = tl_header_of(world);
-    if (tl_body_type(&tl_bodies(h)[i]) != TALUS_KINEMATIC || !(dt > 0.0f && dt <= 1.0f)) {
-        return TALUS_BAD_ARGUMENT;
-    }
-    status = tl_check_pose(pose);
-    if (status != TALUS_OK) {
-        return status;
-    }
-    talus_pose origin = {pose->position, tl_quat_normalize(pose->rotation)};
-    talus_pose frame = tl_row_pose_of(&tl_body_frame(h)[i]), goal = tl_pose_mul(&origin, &frame);
-    talus_quat turn = tl_quat_mul(goal.rotation, tl_quat_conjugate(tl_row_quat(&tl_body_pose(h)[i])));
-    if (turn.w < 0.0f) {
-        turn.x = -turn.x, turn.y = -turn.y, turn.z = -turn.z, turn.w = -turn.w;
-    }
-    talus_vec3 axis = tl_v(turn.x, turn.y, turn.z);
-    float sine = tl_length(axis);
-    float rate = sine > 1e-9f ? 2.0f * tl_atan2(sine, turn.w) / (sine * dt) : 2.0f / dt;
-    talus_vec3 way = tl_sub(goal.position, tl_row_xyz(&tl_body_pose(h)[i]));
-    return talus_body_set_velocity(world, body, tl_scale(way, 1.0f / dt), tl_scale(axis, rate));
-}
-
-talus_status talus_body_get_velocity(const talus_world *world, talus_body body, talus_vec3 *linear,
-                                     talus_vec3 *angular) {
-    uint32_t i;
-    talus_status status = linear && angular ? tl_find_body(world, body, &i) : TALUS_BAD_ARGUMENT;
-    if (status == TALUS_OK) {
-        const tl_row8 *v = &tl_body_velocity(tl_header_of(world))[i];
-        *linear = tl_row_xyz(v);
-        *angular = tl_row_345(v);
-    }
-    return status;
-}
-
-talus_status talus_body_set_velocity(talus_world *world, talus_body body, talus_vec3 linear, talus_vec3 angular) {
-    uint32_t i;
-    talus_status status = tl_find_body(world, body, &i);
-    if (status != TALUS_OK) {
-        return status;
-    }
+static talus_status set_velocity(tl_header *h, uint32_t i, talus_vec3 linear, talus_vec3 angular) {
     if (!tl_is_finite3(linear) || !tl_is_finite3(angular)) {
         return TALUS_NOT_FINITE;
     }
-    tl_header *h = tl_header_of(world);
     uint32_t type = tl_body_type(&tl_bodies(h)[i]);
     if (type == TALUS_STATIC) {
         return TALUS_BAD_ARGUMENT;
@@ -290,31 +231,56 @@ talus_status talus_body_set_velocity(talus_world *world, talus_body body, talus_
     return TALUS_OK;
 }
 
-/* The dynamic body behind a handle, awake. */
-static talus_status find_to_push(talus_world *world, talus_body body, uint32_t *i) {
-    talus_status status = tl_find_body(world, body, i);
+talus_status tl_run_body_set_velocity(talus_world *world, uint32_t i, talus_command *c) {
+    return set_velocity(tl_header_of(world), i, c->as.push.linear, c->as.push.angular);
+}
+
+talus_status tl_run_body_move_to(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_pose *pose = &c->as.move.pose;
+    float dt = c->as.move.dt;
+    tl_header *h = tl_header_of(world);
+    if (tl_body_type(&tl_bodies(h)[i]) != TALUS_KINEMATIC || !(dt > 0.0f && dt <= 1.0f)) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    talus_status status = tl_check_pose(pose);
     if (status != TALUS_OK) {
         return status;
     }
-    tl_header *h = tl_header_of(world);
-    if (!tl_body_is_dynamic(h, *i)) {
-        return TALUS_BAD_ARGUMENT;
+    talus_pose origin = {pose->position, tl_quat_normalize(pose->rotation)};
+    talus_pose frame = tl_row_pose_of(&tl_body_frame(h)[i]), goal = tl_pose_mul(&origin, &frame);
+    talus_quat turn = tl_quat_mul(goal.rotation, tl_quat_conjugate(tl_row_quat(&tl_body_pose(h)[i])));
+    if (turn.w < 0.0f) {
+        turn.x = -turn.x, turn.y = -turn.y, turn.z = -turn.z, turn.w = -turn.w;
     }
-    tl_island_wake(h, *i);
-    return TALUS_OK;
+    talus_vec3 axis = tl_v(turn.x, turn.y, turn.z);
+    float sine = tl_length(axis);
+    float rate = sine > 1e-9f ? 2.0f * tl_atan2(sine, turn.w) / (sine * dt) : 2.0f / dt;
+    talus_vec3 way = tl_sub(goal.position, tl_row_xyz(&tl_body_pose(h)[i]));
+    return set_velocity(h, i, tl_scale(way, 1.0f / dt), tl_scale(axis, rate));
 }
 
-static talus_status add_force(talus_world *world, talus_body body, talus_vec3 force, const talus_vec3 *at,
+talus_status talus_body_get_velocity(const talus_world *world, talus_body body, talus_vec3 *linear,
+                                     talus_vec3 *angular) {
+    uint32_t i;
+    talus_status status = linear && angular ? tl_find_body(world, body, &i) : TALUS_BAD_ARGUMENT;
+    if (status == TALUS_OK) {
+        const tl_row8 *v = &tl_body_velocity(tl_header_of(world))[i];
+        *linear = tl_row_xyz(v);
+        *angular = tl_row_345(v);
+    }
+    return status;
+}
+
+static talus_status add_force(talus_world *world, uint32_t i, talus_vec3 force, const talus_vec3 *at,
                               talus_vec3 torque) {
     if (!tl_is_finite3(force) || !tl_is_finite3(torque) || (at && !tl_is_finite3(*at))) {
         return TALUS_NOT_FINITE;
     }
-    uint32_t i;
-    talus_status status = find_to_push(world, body, &i);
-    if (status != TALUS_OK) {
-        return status;
-    }
     tl_header *h = tl_header_of(world);
+    if (!tl_body_is_dynamic(h, i)) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    tl_island_wake(h, i);
     tl_row8 *f = &tl_body_force(h)[i];
     if (at) {
         torque = tl_add(torque, tl_cross(tl_sub(*at, tl_row_xyz(&tl_body_pose(h)[i])), force));
@@ -324,12 +290,12 @@ static talus_status add_force(talus_world *world, talus_body body, talus_vec3 fo
     return TALUS_OK;
 }
 
-talus_status talus_body_apply_force(talus_world *world, talus_body body, talus_vec3 force, talus_vec3 at) {
-    return add_force(world, body, force, &at, tl_v(0.0f, 0.0f, 0.0f));
+talus_status tl_run_body_apply_force(talus_world *world, uint32_t i, talus_command *c) {
+    return add_force(world, i, c->as.push.linear, &c->as.push.at, tl_v(0.0f, 0.0f, 0.0f));
 }
 
-talus_status talus_body_apply_torque(talus_world *world, talus_body body, talus_vec3 torque) {
-    return add_force(world, body, tl_v(0.0f, 0.0f, 0.0f), NULL, torque);
+talus_status tl_run_body_apply_torque(talus_world *world, uint32_t i, talus_command *c) {
+    return add_force(world, i, tl_v(0.0f, 0.0f, 0.0f), NULL, c->as.push.angular);
 }
 
 /* I^-1 x in world axes. */
@@ -340,17 +306,16 @@ static talus_vec3 inverse_inertia_times(const tl_header *h, uint32_t i, talus_ve
     return tl_rotate(q, tl_v(own.x * s[0] * s[0], own.y * s[1] * s[1], own.z * s[2] * s[2]));
 }
 
-static talus_status add_impulse(talus_world *world, talus_body body, talus_vec3 impulse, const talus_vec3 *at,
+static talus_status add_impulse(talus_world *world, uint32_t i, talus_vec3 impulse, const talus_vec3 *at,
                                 talus_vec3 angular) {
     if (!tl_is_finite3(impulse) || !tl_is_finite3(angular) || (at && !tl_is_finite3(*at))) {
         return TALUS_NOT_FINITE;
     }
-    uint32_t i;
-    talus_status status = find_to_push(world, body, &i);
-    if (status != TALUS_OK) {
-        return status;
-    }
     tl_header *h = tl_header_of(world);
+    if (!tl_body_is_dynamic(h, i)) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    tl_island_wake(h, i);
     tl_row8 *v = &tl_body_velocity(h)[i];
     if (at) {
         angular = tl_add(angular, tl_cross(tl_sub(*at, tl_row_xyz(&tl_body_pose(h)[i])), impulse));
@@ -365,20 +330,16 @@ static talus_status add_impulse(talus_world *world, talus_body body, talus_vec3 
     return TALUS_OK;
 }
 
-talus_status talus_body_apply_impulse(talus_world *world, talus_body body, talus_vec3 impulse, talus_vec3 at) {
-    return add_impulse(world, body, impulse, &at, tl_v(0.0f, 0.0f, 0.0f));
+talus_status tl_run_body_apply_impulse(talus_world *world, uint32_t i, talus_command *c) {
+    return add_impulse(world, i, c->as.push.linear, &c->as.push.at, tl_v(0.0f, 0.0f, 0.0f));
 }
 
-talus_status talus_body_apply_angular_impulse(talus_world *world, talus_body body, talus_vec3 impulse) {
-    return add_impulse(world, body, tl_v(0.0f, 0.0f, 0.0f), NULL, impulse);
+talus_status tl_run_body_apply_angular_impulse(talus_world *world, uint32_t i, talus_command *c) {
+    return add_impulse(world, i, tl_v(0.0f, 0.0f, 0.0f), NULL, c->as.push.angular);
 }
 
-talus_status talus_body_set_damping(talus_world *world, talus_body body, float linear, float angular) {
-    uint32_t i;
-    talus_status status = tl_find_body(world, body, &i);
-    if (status != TALUS_OK) {
-        return status;
-    }
+talus_status tl_run_body_set_damping(talus_world *world, uint32_t i, talus_command *c) {
+    float linear = c->as.damping.linear, angular = c->as.damping.angular;
     if (!tl_is_finite(linear) || !tl_is_finite(angular)) {
         return TALUS_NOT_FINITE;
     }
@@ -390,32 +351,22 @@ talus_status talus_body_set_damping(talus_world *world, talus_body body, float l
     return TALUS_OK;
 }
 
-talus_status talus_body_set_gravity_scale(talus_world *world, talus_body body, float scale) {
-    uint32_t i;
-    talus_status status = tl_find_body(world, body, &i);
-    if (status != TALUS_OK) {
-        return status;
-    }
-    if (!tl_is_finite(scale)) {
+talus_status tl_run_body_set_gravity_scale(talus_world *world, uint32_t i, talus_command *c) {
+    if (!tl_is_finite(c->as.gravity_scale)) {
         return TALUS_NOT_FINITE;
     }
-    tl_body_inertias(tl_header_of(world))[i].gravity_scale = scale;
+    tl_body_inertias(tl_header_of(world))[i].gravity_scale = c->as.gravity_scale;
     tl_island_wake(tl_header_of(world), i);
     return TALUS_OK;
 }
 
-talus_status talus_body_set_locks(talus_world *world, talus_body body, uint32_t locks) {
-    uint32_t i;
-    talus_status status = tl_find_body(world, body, &i);
-    if (status != TALUS_OK) {
-        return status;
-    }
-    if (locks > 63u) {
+talus_status tl_run_body_set_locks(talus_world *world, uint32_t i, talus_command *c) {
+    if (c->as.locks > 63u) {
         return TALUS_BAD_ARGUMENT;
     }
     tl_header *h = tl_header_of(world);
     tl_body_meta *meta = &tl_bodies(h)[i];
-    meta->flags = (meta->flags & ((1u << TL_BODY_LOCKS) - 1u)) | locks << TL_BODY_LOCKS;
+    meta->flags = (meta->flags & ((1u << TL_BODY_LOCKS) - 1u)) | c->as.locks << TL_BODY_LOCKS;
     tl_island_wake(h, i);
     return TALUS_OK;
 }
@@ -443,21 +394,14 @@ int talus_body_is_awake(const talus_world *world, talus_body body) {
     return tl_find_body(world, body, &i) == TALUS_OK && tl_body_row(tl_header_of(world))[i] != 0;
 }
 
-talus_status talus_body_wake(talus_world *world, talus_body body) {
-    uint32_t i;
-    talus_status status = tl_find_body(world, body, &i);
-    if (status == TALUS_OK) {
-        tl_island_wake(tl_header_of(world), i);
-    }
-    return status;
+talus_status tl_run_body_wake(talus_world *world, uint32_t i, talus_command *c) {
+    (void)c;
+    tl_island_wake(tl_header_of(world), i);
+    return TALUS_OK;
 }
 
-talus_status talus_body_sleep(talus_world *world, talus_body body) {
-    uint32_t i;
-    talus_status status = tl_find_body(world, body, &i);
-    if (status != TALUS_OK) {
-        return status;
-    }
+talus_status tl_run_body_sleep(talus_world *world, uint32_t i, talus_command *c) {
+    (void)c;
     tl_header *h = tl_header_of(world);
     if (!tl_body_is_dynamic(h, i)) {
         return TALUS_BAD_ARGUMENT;

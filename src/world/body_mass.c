@@ -7,6 +7,7 @@
 #include "stage/broad/refit.h"
 #include "talus/body.h"
 #include "talus/shape.h"
+#include "world/command.h"
 #include "world/world_internal.h"
 
 /* An axis with less of this share of the largest principal inertia is taken as one about which nothing turns. */
@@ -157,16 +158,12 @@ static int is_inertia(const talus_mat3 *m) {
     return moment[0] >= -slack && moment[1] >= -slack && moment[2] >= -slack;
 }
 
-talus_status talus_body_set_mass(talus_world *world, talus_body body, const talus_mass *mass) {
-    uint32_t i;
-    talus_status status = mass ? tl_find_body(world, body, &i) : TALUS_BAD_ARGUMENT;
-    if (status != TALUS_OK) {
-        return status;
-    }
+talus_status tl_run_body_set_mass(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_mass *mass = &c->as.mass;
     if (!tl_is_finite(mass->mass) || !tl_is_finite_mat3(&mass->inertia)) {
         return TALUS_NOT_FINITE;
     }
-    status = tl_check_point(mass->center);
+    talus_status status = tl_check_point(mass->center);
     if (status != TALUS_OK) {
         return status;
     }
@@ -180,14 +177,11 @@ talus_status talus_body_set_mass(talus_world *world, talus_body body, const talu
     return TALUS_OK;
 }
 
-talus_status talus_body_mass_from_shapes(talus_world *world, talus_body body) {
-    uint32_t i;
-    talus_status status = tl_find_body(world, body, &i);
-    if (status == TALUS_OK) {
-        tl_header *h = tl_header_of(world);
-        tl_island_wake(h, i);
-        tl_bodies(h)[i].flags &= ~(uint32_t)TL_BODY_MASS_SET;
-        tl_body_update_mass(world, i);
-    }
-    return status;
+talus_status tl_run_body_mass_from_shapes(talus_world *world, uint32_t i, talus_command *c) {
+    (void)c;
+    tl_header *h = tl_header_of(world);
+    tl_island_wake(h, i);
+    tl_bodies(h)[i].flags &= ~(uint32_t)TL_BODY_MASS_SET;
+    tl_body_update_mass(world, i);
+    return TALUS_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "base/trig.h"
 #include "stage/stages.h"
+#include "world/command.h"
 #include "world/world_internal.h"
 
 #define FAR 3.0e38f /* an open side of a range */
@@ -270,9 +271,10 @@ static void part(tl_header *h, uint32_t a, uint32_t b) {
     }
 }
 
-talus_status talus_joint_create(talus_world *world, const talus_joint_def *def, talus_joint *out) {
+talus_status tl_run_joint_create(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_joint_def *def = &c->as.joint;
     uint32_t a, b;
-    talus_status status = def && out ? find_end(world, def->a, &a) : TALUS_BAD_ARGUMENT;
+    talus_status status = find_end(world, def->a, &a);
     if (status == TALUS_OK) {
         status = find_end(world, def->b, &b);
     }
@@ -286,22 +288,16 @@ talus_status talus_joint_create(talus_world *world, const talus_joint_def *def, 
     if (a == b || (!tl_body_is_dynamic(h, a) && !tl_body_is_dynamic(h, b))) {
         return TALUS_BAD_ARGUMENT;
     }
-    uint32_t i = tl_pool_top(&h->joints, h->capacity[TL_COUNT_JOINT]);
+    i = tl_pool_top(&h->joints, h->capacity[TL_COUNT_JOINT]);
     if (i == TL_NONE) {
         return TALUS_FULL_JOINTS;
     }
     tl_joint_record *j = &tl_joints(h)[i];
-    if (i == h->joints.free) {
-        h->joints.free = j->free_next;
-    } else {
-        h->joints.high++;
-    }
-    h->joints.used++;
-    h->joints.peak = h->joints.used > h->joints.peak ? h->joints.used : h->joints.peak;
-    uint32_t generation = j->generation + 1u;
+    tl_pool_take(&h->joints, i, j->free_next);
+    uint32_t generation = tl_next_generation(j->generation);
     memset(j, 0, sizeof *j);
     memset(&tl_joint_states(h)[i], 0, sizeof(tl_joint_state));
-    j->generation = generation ? generation : 1u;
+    j->generation = generation;
     j->flags = TL_JOINT_ALIVE | (def->collide_connected ? TL_JOINT_COLLIDE : 0u);
     j->body_a = a, j->body_b = b;
     j->free_next = TL_NONE;
@@ -316,22 +312,33 @@ talus_status talus_joint_create(talus_world *world, const talus_joint_def *def, 
     if (!def->collide_connected) {
         part(h, a == 0 ? b : a, a == 0 ? a : b);
     }
-    out->index = i, out->generation = j->generation;
+    c->index = i, c->generation = generation;
     return TALUS_OK;
 }
 
-talus_status talus_joint_destroy(talus_world *world, talus_joint joint) {
-    uint32_t i;
-    talus_status status = tl_find_joint(world, joint, &i);
-    if (status == TALUS_OK) {
-        tl_joint_remove(tl_header_of(world), i);
-    }
-    return status;
+talus_status tl_run_joint_destroy(talus_world *world, uint32_t i, talus_command *c) {
+    (void)c;
+    tl_joint_remove(tl_header_of(world), i);
+    return TALUS_OK;
 }
 
 int talus_joint_is_valid(const talus_world *world, talus_joint joint) {
     uint32_t i;
     return tl_find_joint(world, joint, &i) == TALUS_OK;
+}
+
+int tl_joint_is_compiled(const talus_world *world, uint32_t i) {
+    const tl_header *h = tl_header_of(world);
+    const tl_joint_record *j = &tl_joints(h)[i];
+    const talus_joint joint = {i, j->generation};
+    talus_joint_def def;
+    tl_joint_record again = *j;
+    if (talus_joint_get_def(world, joint, &def) != TALUS_OK || check_def(&def) != TALUS_OK) {
+        return 0;
+    }
+    compile(&again);
+    tl_joint_place(h, &again);
+    return memcmp(j, &again, sizeof again) == 0;
 }
 
 static talus_axis load_axis(const tl_joint_axis_record *r) {
@@ -374,19 +381,17 @@ talus_status talus_joint_get_def(const talus_world *world, talus_joint joint, ta
     return TALUS_OK;
 }
 
-static talus_status set_drive(talus_world *world, talus_joint joint, int axis, int first, const talus_drive *drive) {
-    uint32_t i;
-    talus_status status = drive && axis >= 0 && axis < 3 ? tl_find_joint(world, joint, &i) : TALUS_BAD_ARGUMENT;
-    if (status == TALUS_OK) {
-        status = check_drive(drive);
-    }
+talus_status tl_run_joint_set_drive(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_drive *drive = &c->as.drive.drive;
+    uint32_t axis = c->as.drive.axis;
+    talus_status status = axis < 6u ? check_drive(drive) : TALUS_BAD_ARGUMENT;
     if (status != TALUS_OK) {
         return status;
     }
     tl_header *h = tl_header_of(world);
     tl_joint_record *j = &tl_joints(h)[i];
-    int structure = j->drive[first + axis].enabled != (drive->enabled ? 1u : 0u);
-    j->drive[first + axis] = store_drive(drive);
+    int structure = j->drive[axis].enabled != (drive->enabled ? 1u : 0u);
+    j->drive[axis] = store_drive(drive);
     compile(j);
     if (structure) { /* the rows are numbered anew: their impulses mean something else now */
         memset(&tl_joint_states(h)[i], 0, sizeof(tl_joint_state));
@@ -394,14 +399,6 @@ static talus_status set_drive(talus_world *world, talus_joint joint, int axis, i
     tl_island_wake(h, j->body_a);
     tl_island_wake(h, j->body_b);
     return TALUS_OK;
-}
-
-talus_status talus_joint_set_linear_drive(talus_world *world, talus_joint joint, int axis, const talus_drive *drive) {
-    return set_drive(world, joint, axis, 0, drive);
-}
-
-talus_status talus_joint_set_angular_drive(talus_world *world, talus_joint joint, int axis, const talus_drive *drive) {
-    return set_drive(world, joint, axis, 3, drive);
 }
 
 talus_status talus_joint_get_reaction(const talus_world *world, talus_joint joint, talus_vec3 *force,

@@ -2,7 +2,7 @@
 #include "stage/broad/refit.h"
 #include "stage/island/islands.h"
 #include "stage/stages.h"
-#include "talus/world.h"
+#include "world/command.h"
 #include "world/watch.h"
 
 /* A contact in overlap is a damped spring of the set frequency, no stiffer than what the sub-steps can follow. */
@@ -102,10 +102,9 @@ static void solve(tl_step *step, tl_watch *w) {
     k->store_joints(step, 0, h->joint_groups);
 }
 
-talus_status talus_world_step(talus_world *world, float dt, const talus_clock *clock, talus_profile *profile) {
-    if (!tl_world_is_sound(world)) {
-        return TALUS_BAD_ARGUMENT;
-    }
+talus_status tl_run_world_step(talus_world *world, uint32_t i, talus_command *c) {
+    float dt = c->as.step.dt;
+    (void)i;
     if (!tl_is_finite(dt)) {
         return TALUS_NOT_FINITE;
     }
@@ -114,7 +113,7 @@ talus_status talus_world_step(talus_world *world, float dt, const talus_clock *c
     }
     tl_watch w;
     tl_step step;
-    tl_watch_start(&w, tl_header_of(world), clock, profile);
+    tl_watch_start(&w, tl_header_of(world), c->as.step.clock, c->as.step.profile);
     begin_step(&step, world, dt);
     tl_header *h = step.h;
     tl_watch_lap(&w, TALUS_STAGE_COMMANDS);
@@ -138,6 +137,6 @@ talus_status talus_world_step(talus_world *world, float dt, const talus_clock *c
     if (++h->steps_low == 0) {
         h->steps_high++;
     }
-    tl_watch_stop(&w, world, profile);
+    tl_watch_stop(&w, world, c->as.step.profile);
     return TALUS_OK;
 }

@@ -300,5 +300,7 @@ talus_status tl_reindex_end(tl_header *h, const tl_header *before) {
     }
     renew_joints(h);
     renew_parted(h, before->joints.high);
-    return renew_contacts(h);
+    talus_status status = renew_contacts(h);
+    tl_lists_of_awake(h);
+    return status;
 }

@@ -6,6 +6,7 @@
 #include "geom/mass.h"
 #include "stage/broad/refit.h"
 #include "stage/stages.h"
+#include "world/command.h"
 #include "world/world_internal.h"
 
 talus_shape_def talus_shape_def_default(void) {
@@ -58,9 +59,10 @@ static talus_status check_def(const talus_world *world, const talus_shape_def *d
     return d->density >= 0.0f ? tl_check_pose(&d->pose) : TALUS_BAD_ARGUMENT;
 }
 
-talus_status talus_shape_create(talus_world *world, talus_body body, const talus_shape_def *def, talus_shape *out) {
+talus_status tl_run_shape_create(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_shape_def *def = &c->as.shape.def;
     uint32_t b;
-    talus_status status = def && out ? tl_find_body(world, body, &b) : TALUS_BAD_ARGUMENT;
+    talus_status status = tl_find_body(world, c->as.shape.body, &b);
     if (status == TALUS_OK) {
         status = check_def(world, def);
     }
@@ -68,21 +70,15 @@ talus_status talus_shape_create(talus_world *world, talus_body body, const talus
         return status;
     }
     tl_header *h = tl_header_of(world);
-    uint32_t i = tl_pool_top(&h->shapes, h->capacity[TL_COUNT_SHAPE]);
+    i = tl_pool_top(&h->shapes, h->capacity[TL_COUNT_SHAPE]);
     if (i == TL_NONE) {
         return TALUS_FULL_SHAPES;
     }
     tl_shape_meta *meta = &tl_shapes(h)[i];
-    if (i == h->shapes.free) {
-        h->shapes.free = meta->next;
-    } else {
-        h->shapes.high++;
-    }
-    h->shapes.used++;
-    h->shapes.peak = h->shapes.used > h->shapes.peak ? h->shapes.used : h->shapes.peak;
-    uint32_t generation = meta->generation + 1u;
+    tl_pool_take(&h->shapes, i, meta->next);
+    uint32_t generation = tl_next_generation(meta->generation);
     memset(meta, 0, sizeof *meta);
-    meta->generation = generation ? generation : 1u;
+    meta->generation = generation;
     meta->flags = TL_SHAPE_ALIVE | (def->sensor ? TL_SHAPE_SENSOR : 0u) | (def->events ? TL_SHAPE_EVENTS : 0u);
     h->event_shapes += (meta->flags & (TL_SHAPE_SENSOR | TL_SHAPE_EVENTS)) != 0;
     meta->body = b;
@@ -103,7 +99,7 @@ talus_status talus_shape_create(talus_world *world, talus_body body, const talus
     meta->next = tl_bodies(h)[b].first_shape;
     tl_bodies(h)[b].first_shape = i;
     tl_body_update_mass(world, b); /* places the shape and enters it in the list of what moved */
-    out->index = i, out->generation = meta->generation;
+    c->index = i, c->generation = generation;
     return TALUS_OK;
 }
 
@@ -140,17 +136,14 @@ void tl_shape_remove(tl_header *h, uint32_t i) {
     h->shapes.used--;
 }
 
-talus_status talus_shape_destroy(talus_world *world, talus_shape shape) {
-    uint32_t i;
-    talus_status status = tl_find_shape(world, shape, &i);
-    if (status == TALUS_OK) {
-        tl_header *h = tl_header_of(world);
-        uint32_t body = tl_shapes(h)[i].body;
-        tl_island_wake(h, body);
-        tl_shape_remove(h, i);
-        tl_body_update_mass(world, body);
-    }
-    return status;
+talus_status tl_run_shape_destroy(talus_world *world, uint32_t i, talus_command *c) {
+    (void)c;
+    tl_header *h = tl_header_of(world);
+    uint32_t body = tl_shapes(h)[i].body;
+    tl_island_wake(h, body);
+    tl_shape_remove(h, i);
+    tl_body_update_mass(world, body);
+    return TALUS_OK;
 }
 
 int talus_shape_is_valid(const talus_world *world, talus_shape shape) {
@@ -191,17 +184,13 @@ talus_status talus_shape_get_material(const talus_world *world, talus_shape shap
     return status;
 }
 
-talus_status talus_shape_set_material(talus_world *world, talus_shape shape, const talus_material *material) {
-    uint32_t i;
-    talus_status status = material ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
-    if (status == TALUS_OK) {
-        status = check_material(material);
-    }
+talus_status tl_run_shape_set_material(talus_world *world, uint32_t i, talus_command *c) {
+    talus_status status = check_material(&c->as.material);
     if (status != TALUS_OK) {
         return status;
     }
     tl_header *h = tl_header_of(world);
-    tl_shape_material(h)[i] = stored(material);
+    tl_shape_material(h)[i] = stored(&c->as.material);
     uint32_t body = tl_shapes(h)[i].body;
     tl_island_wake(h, body);
     uint32_t count = tl_contacts_of(h, body, i);
@@ -223,12 +212,8 @@ talus_status talus_shape_get_filter(const talus_world *world, talus_shape shape,
     return status;
 }
 
-talus_status talus_shape_set_filter(talus_world *world, talus_shape shape, const talus_filter *filter) {
-    uint32_t i;
-    talus_status status = filter ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
-    if (status != TALUS_OK) {
-        return status;
-    }
+talus_status tl_run_shape_set_filter(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_filter *filter = &c->as.filter;
     tl_header *h = tl_header_of(world);
     tl_shape_category(h)[i] = filter->category;
     tl_shape_mask(h)[i] = filter->mask;

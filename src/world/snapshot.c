@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/bits.h"
+#include "talus/command.h"
 #include "world/pack.h"
 #include "world/reindex.h"
 #include "world/world_internal.h"
@@ -25,12 +26,10 @@ static size_t state_words(void) { return (offsetof(tl_header, end) - offsetof(tl
 /* Columns that are written row by row; those of contacts are written contact by contact. */
 static int is_packed(tl_column_id column) {
     switch (column) {
-    case TL_COLUMN_body_colors:
     case TL_COLUMN_heads:
     case TL_COLUMN_points:
     case TL_COLUMN_contacts:
     case TL_COLUMN_contact_caches:
-    case TL_COLUMN_contact_materials:
         return 0;
     default:
         return 1;
@@ -170,11 +169,7 @@ static const unsigned char *get_contact(const unsigned char *p, const unsigned c
 
 /* --- saving ----------------------------------------------------------------------------------- */
 
-size_t talus_world_save_size(const talus_world *world) {
-    if (!tl_world_is_sound(world)) {
-        return 0;
-    }
-    const tl_header *h = tl_header_of(world);
+static size_t most_bytes(const tl_header *h) {
     size_t size = 4u * (HEAD_WORDS + state_words()) + 8u * (size_t)tl_bit_words(h->contacts.high) +
                   (size_t)h->contacts.used * MOST_CONTACT_BYTES;
     for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
@@ -184,6 +179,18 @@ size_t talus_world_save_size(const talus_world *world) {
         }
     }
     return size;
+}
+
+size_t tl_snapshot_most(const tl_header *h) {
+    tl_header full = *h;
+    full.bodies.high = h->capacity[TL_COUNT_BODY], full.shapes.high = h->capacity[TL_COUNT_SHAPE];
+    full.joints.high = h->capacity[TL_COUNT_JOINT];
+    full.contacts.high = full.contacts.used = h->capacity[TL_COUNT_CONTACT];
+    return most_bytes(&full);
+}
+
+size_t talus_world_save_size(const talus_world *world) {
+    return tl_world_is_sound(world) ? most_bytes(tl_header_of(world)) : 0;
 }
 
 talus_status talus_world_save(const talus_world *world, void *out, size_t bytes, size_t *written) {
@@ -356,6 +363,9 @@ talus_status talus_world_restore(talus_world *world, const void *snapshot, size_
             talus_world_init(&fresh, &def, h, (size_t)h->units * TL_UNIT);
         }
         return TALUS_BAD_BLOB;
+    }
+    if (world->log) {
+        world->log->lost++; /* no command says what this did */
     }
     return TALUS_OK;
 }

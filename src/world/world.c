@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "stage/kernels.h"
+#include "world/command.h"
 #include "world/world_internal.h"
 
 static const char *const STATUS_TEXT[TALUS_STATUS_COUNT] = {
@@ -157,6 +158,7 @@ talus_status talus_world_init(talus_world *world, const talus_world_def *def, vo
     world->block = block;
     world->geometry = NULL;
     world->geometry_bytes = 0;
+    world->log = NULL;
     return TALUS_OK;
 }
 
@@ -176,16 +178,13 @@ talus_isa talus_world_get_isa(const talus_world *world) {
     return tl_world_is_sound(world) ? (talus_isa)tl_header_of(world)->isa : TALUS_ISA_BEST;
 }
 
-talus_status talus_world_set_gravity(talus_world *world, talus_vec3 gravity) {
-    if (!tl_world_is_sound(world)) {
-        return TALUS_BAD_ARGUMENT;
-    }
-    if (!tl_is_finite3(gravity)) {
+talus_status tl_run_world_set_gravity(talus_world *world, uint32_t i, talus_command *c) {
+    if (!tl_is_finite3(c->as.gravity)) {
         return TALUS_NOT_FINITE;
     }
     tl_header *h = tl_header_of(world);
-    h->settings.gravity = gravity;
-    for (uint32_t i = 1; i < h->bodies.high; i++) {
+    h->settings.gravity = c->as.gravity;
+    for (i = 1; i < h->bodies.high; i++) {
         if ((tl_bodies(h)[i].flags & TL_BODY_ALIVE) && tl_body_is_dynamic(h, i)) {
             tl_island_wake(h, i);
         }

@@ -27,6 +27,21 @@ static inline talus_status tl_check_pose(const talus_pose *p) {
     return q.x == 0.0f && q.y == 0.0f && q.z == 0.0f && q.w == 0.0f ? TALUS_BAD_ARGUMENT : tl_check_point(p->position);
 }
 
+/* Takes the slot that tl_pool_top gave, `next` being its link in the free list. */
+static inline void tl_pool_take(tl_pool *pool, uint32_t i, uint32_t next) {
+    if (i == pool->free) {
+        pool->free = next;
+    } else {
+        pool->high++;
+    }
+    pool->used++;
+    pool->peak = pool->used > pool->peak ? pool->used : pool->peak;
+}
+static inline uint32_t tl_next_generation(uint32_t generation) { return generation + 1u ? generation + 1u : 1u; }
+
+/* The most bytes of a snapshot with every capacity used up. */
+size_t tl_snapshot_most(const tl_header *h);
+
 /* The pose of the body's origin. */
 talus_pose tl_body_origin(const tl_header *h, uint32_t body);
 
@@ -40,5 +55,10 @@ void tl_shape_remove(tl_header *h, uint32_t shape);
 
 /* Where the joint's frames stand in the bodies' mass frames. */
 void tl_joint_place(const tl_header *h, tl_joint_record *joint);
+
+/* Parts of talus_world_validate: whether a joint's numbers are in order and its rows what they are compiled to; whether
+ * all floats are finite. The bodies' indices have been looked at. */
+int tl_joint_is_compiled(const talus_world *world, uint32_t joint);
+int tl_numbers_are_sound(const tl_header *h);
 
 #endif

@@ -134,7 +134,7 @@ static void each_bit_counts(void **state) {
 static void comparing_what_cannot_be(void **state) {
     (void)state;
     talus_world_def def = kit_small();
-    talus_world a = kit_world(&def), none = {NULL, NULL, 0};
+    talus_world a = kit_world(&def), none = {NULL, NULL, 0, NULL};
     def.body_capacity++;
     talus_world b = kit_world(&def);
     talus_difference d;

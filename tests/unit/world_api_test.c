@@ -34,7 +34,7 @@ static void no_world(void **state) {
     size_t size = talus_world_size(&def);
     void *block = kit_alloc(size);
     memset(block, 0, size);
-    talus_world none = {NULL, NULL, 0}, blank = {block, NULL, 0};
+    talus_world none = {NULL, NULL, 0, NULL}, blank = {block, NULL, 0, NULL};
     talus_world *const worlds[3] = {NULL, &none, &blank};
     for (int i = 0; i < 3; i++) {
         talus_world *w = worlds[i];

@@ -14,6 +14,9 @@ static const char *const talus_page[] = {
     "    talus profile --compare A.json B.json\n"
     "    talus scene NAME [-o FILE.gltf]\n"
     "    talus scene --list\n"
+    "    talus record SCENE -o FILE.trec [OPTION]...\n"
+    "    talus replay FILE.trec [OPTION]...\n"
+    "    talus diff A.trec B.trec [OPTION]...\n"
     "    talus help [SUBCOMMAND]\n"
     "    talus version\n"
     "\n"
@@ -21,6 +24,9 @@ static const char *const talus_page[] = {
     "    run      runs a scene and says how long steps took, what memory they used and which bits came out\n"
     "    profile  says which steps of a scene take long and why, or whether one profile is slower than another\n"
     "    scene    writes one of the tool's own scenes as glTF\n"
+    "    record   runs a scene and writes what was done to its world\n"
+    "    replay   does it again, by any instruction set, and compares every step\n"
+    "    diff     finds the first step, stage, column, body and value in which two recordings part\n"
     "    help     this text, or that of a subcommand\n"
     "    version  the version of the tool and the library\n"
     "\n",
@@ -29,8 +35,10 @@ static const char *const talus_page[] = {
     "    1  it could not be done: a file could not be read or written, or memory ran out\n"
     "    2  the command line is wrong\n"
     "    3  the scene, or an option, asks for what is not supported\n"
-    "    4  the scene's file is broken\n"
-    "    5  it was done and took longer than asked for (talus profile)\n"
+    "    4  the file is broken\n"
+    "    5  two runs part (replay, diff)\n"
+    "    6  two runs are the same as far as the shorter one goes (replay, diff)\n"
+    "    7  it was done and took longer than asked for (profile)\n"
     "\n"
     "EXAMPLES\n"
     "    talus run @showcase --animate showcase.glb\n"
@@ -179,12 +187,121 @@ static const char *const scene_page[] = {
     "    talus scene ragdolls -o ragdolls.gltf\n",
     NULL};
 
+static const char *const record_page[] = {
+    "NAME\n"
+    "    talus record - runs a scene and writes what was done to its world\n"
+    "\n"
+    "SYNOPSIS\n"
+    "    talus record SCENE -o FILE.trec [--steps N] [--dt S] [--substeps N] [--iterations N] [--isa SET]\n"
+    "                 [--no-sleep] [--flip STEP:COLUMN:ROW:BIT] [--quiet]\n"
+    "\n"
+    "DESCRIPTION\n"
+    "    Steps SCENE as `talus run` does and writes a recording: the hulls, the state before the first step and\n"
+    "    every so often after it (a keyframe), all commands, and after every step a hash of each column of the\n"
+    "    state: of what is awake, and every 64 steps of all of it. A recording that is cut off replays up to the\n"
+    "    cut. The library writes the same from within an engine (talus/record.h).\n"
+    "\n"
+    "OPTIONS\n"
+    "    -o, --output FILE.trec  the file to write\n"
+    "    --flip STEP:COLUMN:ROW:BIT\n"
+    "                       after step STEP flip one bit of the state, which shows that `talus diff` finds it.\n"
+    "                       COLUMN is a name (a wrong one gets the list of them), BIT counts from the row's first\n"
+    "                       word on, lowest bit first. A flip with which the state is no longer sound is refused\n"
+    "    --quiet            print nothing but what went wrong\n"
+    "    --help             this text\n"
+    "    The others are those of `talus run`.\n"
+    "\n",
+    "EXIT STATUS\n"
+    "    0 done, 1 it failed, 2 the command line is wrong, 3 unsupported, 4 the scene's file is broken\n"
+    "\n"
+    "EXAMPLES\n"
+    "    talus record @pile -o pile.trec\n"
+    "    talus record @pile -o flipped.trec --flip 120:body_velocity:17:5\n"
+    "    talus diff pile.trec flipped.trec\n",
+    NULL};
+
+static const char *const replay_page[] = {
+    "NAME\n"
+    "    talus replay - does again what a recording holds and compares every step\n"
+    "\n"
+    "SYNOPSIS\n"
+    "    talus replay FILE.trec [--isa SET] [--to STEP] [--sync-test] [--json] [--summary FILE.md]\n"
+    "                 [--junit FILE.xml] [--quiet]\n"
+    "\n"
+    "DESCRIPTION\n"
+    "    Does the recording's commands to its first state and compares the hash of every column after every\n"
+    "    step. Where they part it names the step, the stage and the column: the first in the order of a step.\n"
+    "\n"
+    "OPTIONS\n"
+    "    --isa SET          scalar, sse2, avx2, neon, wasm or best (default: best)\n"
+    "    --to STEP          stop after this step\n"
+    "    --sync-test        at each step save the world, step, restore, step again, and compare: what a game\n"
+    "                       with rollback relies on\n"
+    "    --json             print one line of JSON\n"
+    "    --summary FILE.md  add a table in Markdown to the file, as $GITHUB_STEP_SUMMARY is filled\n"
+    "    --junit FILE.xml   write a JUnit report of one test case\n"
+    "    --quiet            print nothing but what went wrong\n"
+    "    --help             this text\n"
+    "\n"
+    "EXIT STATUS\n"
+    "    0  every step is the same\n"
+    "    1  the file could not be read, or memory ran out\n"
+    "    2  the command line is wrong\n"
+    "    3  the recording is of another version, or the instruction set is not to be had\n"
+    "    4  the recording is damaged; the message has the offset\n"
+    "    5  a step is not the same\n"
+    "    6  every step is the same, but the end of the recording is missing\n"
+    "\n"
+    "EXAMPLES\n"
+    "    talus replay pile.trec --isa scalar --junit replay.xml\n",
+    NULL};
+
+static const char *const diff_page[] = {
+    "NAME\n"
+    "    talus diff - finds where two recordings part\n"
+    "\n"
+    "SYNOPSIS\n"
+    "    talus diff A.trec B.trec [--json] [--summary FILE.md] [--junit FILE.xml] [--quiet]\n"
+    "\n"
+    "DESCRIPTION\n"
+    "    Finds the first step after which the recorded hashes differ, replays both from the last keyframe before\n"
+    "    it, and names the step, the stage that wrote the column, the column, its row, the bodies that the row\n"
+    "    is of, the word in it and both values, as bits and as a float:\n"
+    "\n"
+    "      step 120: stage commit, body_velocity of body 17, word 0: 0x3f8147ae (1.01) and 0x3f81478e (1.00999)\n"
+    "\n"
+    "    If the commands of the step differ too, it says so. If a recording does not replay here to its own\n"
+    "    hashes, as one from a machine that errs, it says which and from where on, and names step, stage and\n"
+    "    column by the hashes alone; of what sleeps these know every 64th step.\n"
+    "\n"
+    "OPTIONS\n"
+    "    --json, --summary FILE.md, --junit FILE.xml, --quiet, --help: as for `talus replay`\n"
+    "\n",
+    "EXIT STATUS\n"
+    "    0  they are the same\n"
+    "    1  a file could not be read, or memory ran out\n"
+    "    2  the command line is wrong\n"
+    "    3  they cannot be compared: another version, other capacities\n"
+    "    4  a recording is damaged; the message has the offset\n"
+    "    5  they part\n"
+    "    6  they are the same as far as the shorter one goes\n"
+    "\n"
+    "EXAMPLES\n"
+    "    talus diff server.trec console.trec --summary \"$GITHUB_STEP_SUMMARY\"\n",
+    NULL};
+
 int tool_print_manual(const char *subcommand) {
-    const char *const *page = subcommand == NULL                   ? talus_page
-                              : strcmp(subcommand, "run") == 0     ? run_page
-                              : strcmp(subcommand, "profile") == 0 ? profile_manual
-                              : strcmp(subcommand, "scene") == 0   ? scene_page
-                                                                   : NULL;
+    static const struct {
+        const char *name;
+        const char *const *page;
+    } pages[] = {{"run", run_page},       {"profile", profile_manual}, {"scene", scene_page},
+                 {"record", record_page}, {"replay", replay_page},     {"diff", diff_page}};
+    const char *const *page = subcommand == NULL ? talus_page : NULL;
+    for (size_t i = 0; subcommand != NULL && i < sizeof pages / sizeof *pages; i++) {
+        if (strcmp(subcommand, pages[i].name) == 0) {
+            page = pages[i].page;
+        }
+    }
     for (int i = 0; page != NULL && page[i] != NULL; i++) {
         fputs(page[i], stdout);
     }

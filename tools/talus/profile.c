@@ -2,7 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "host/clock.h"
 #include "host/file.h"
-#include "input.h"
+#include "source.h"
 #include "timeline.h"
 #include "tool.h"
 
@@ -48,21 +48,21 @@ static int take_option(int option, profile_options *out) {
     uint64_t number = 0;
     switch (option) {
     case STEPS:
-        return input_whole("--steps", optarg, 1, MOST_STEPS, &out->steps) ? 0 : TOOL_USAGE;
+        return source_whole("--steps", optarg, 1, MOST_STEPS, &out->steps) ? 0 : TOOL_USAGE;
     case RUN_COUNT:
-        if (!input_whole("--runs", optarg, 1, MOST_RUNS, &number)) {
+        if (!source_whole("--runs", optarg, 1, MOST_RUNS, &number)) {
             return TOOL_USAGE;
         }
         out->runs = (uint32_t)number;
         return 0;
     case SUBSTEPS:
-        if (!input_whole("--substeps", optarg, 1, TALUS_MAX_SUBSTEPS, &number)) {
+        if (!source_whole("--substeps", optarg, 1, TALUS_MAX_SUBSTEPS, &number)) {
             return TOOL_USAGE;
         }
         out->build.substeps = (uint32_t)number;
         return 0;
     case ISA:
-        return input_isa(optarg, &out->build.isa);
+        return source_isa(optarg, &out->build.isa);
     case NO_SLEEP:
         out->build.no_sleep = 1;
         return 0;
@@ -82,7 +82,7 @@ static int take_option(int option, profile_options *out) {
         out->html = optarg;
         return 0;
     case BUDGET:
-        return input_number("--budget", optarg, "milliseconds", 1e-6, 1e6, &out->budget_ms) ? 0 : TOOL_USAGE;
+        return source_number("--budget", optarg, "milliseconds", 1e-6, 1e6, &out->budget_ms) ? 0 : TOOL_USAGE;
     default:
         return tool_fail(TOOL_USAGE, "see: talus help profile");
     }
@@ -174,17 +174,17 @@ static int check_budget(const timeline *t, double budget_ms) {
 }
 
 static int profile(const profile_options *options) {
-    profile_source source;
+    profile_source from;
     timeline t;
     live view = {options->budget_ms, 0, 0};
-    int status = profile_open_scene(&source, options->scene, &options->build, options->steps);
+    int status = profile_open_scene(&from, options->scene, &options->build, options->steps);
     if (status != 0) {
         return status;
     }
     int watched = !options->json && isatty(STDERR_FILENO);
-    status = timeline_take(&t, &source, options->runs, watched ? show : NULL, &view);
+    status = timeline_take(&t, &from, options->runs, watched ? show : NULL, &view);
     wipe(&view);
-    source.close(&source);
+    from.close(&from);
     if (status == 0) {
         status = write_all(options, &t);
     }

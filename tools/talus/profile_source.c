@@ -1,5 +1,5 @@
 /* Scenes as what can be profiled. */
-#include "input.h"
+#include "source.h"
 #include "timeline.h"
 #include "tool.h"
 
@@ -17,32 +17,32 @@ typedef struct scene_run {
     const char *path;
 } scene_run;
 
-static int begin(profile_source *source) {
-    scene_run *run = source->inner;
+static int begin(profile_source *from) {
+    scene_run *run = from->inner;
     gltf_error error;
     if (gltf_build(&run->scene, &run->options, &run->world, &error) != GLTF_OK) {
         gltf_world_free(&run->world);
         return tool_fail((int)error.status, "%s: %s", run->path, error.text);
     }
-    source->world = &run->world.world;
+    from->world = &run->world.world;
     return 0;
 }
 
-static int step(profile_source *source, const talus_clock *clock) {
-    talus_status status = talus_world_step(source->world, source->dt, clock, NULL);
-    const scene_run *run = source->inner;
+static int step(profile_source *from, const talus_clock *clock) {
+    talus_status status = talus_world_step(from->world, from->dt, clock, NULL);
+    const scene_run *run = from->inner;
     return status == TALUS_OK ? 0
                               : tool_fail(GLTF_FAILED, "%s: a step failed: %s", run->path, talus_status_text(status));
 }
 
-static void end(profile_source *source) {
-    scene_run *run = source->inner;
+static void end(profile_source *from) {
+    scene_run *run = from->inner;
     gltf_world_free(&run->world);
-    source->world = NULL;
+    from->world = NULL;
 }
 
-static const char *name_of(const profile_source *source, uint32_t body, char *buffer, size_t size) {
-    const scene_run *run = source->inner;
+static const char *name_of(const profile_source *from, uint32_t body, char *buffer, size_t size) {
+    const scene_run *run = from->inner;
     for (uint32_t i = 0; i < run->scene.body_count; i++) {
         if (run->world.bodies[i].index == body) {
             const gltf_body *b = &run->scene.bodies[i];
@@ -56,20 +56,20 @@ static const char *name_of(const profile_source *source, uint32_t body, char *bu
     return "the world";
 }
 
-static void close_scene(profile_source *source) {
-    scene_run *run = source->inner;
+static void close_scene(profile_source *from) {
+    scene_run *run = from->inner;
     gltf_scene_free(&run->scene);
     free(run);
-    source->inner = NULL;
+    from->inner = NULL;
 }
 
-int profile_open_scene(profile_source *source, const char *path, const gltf_build_options *options, uint64_t steps) {
-    memset(source, 0, sizeof *source);
+int profile_open_scene(profile_source *from, const char *path, const gltf_build_options *options, uint64_t steps) {
+    memset(from, 0, sizeof *from);
     scene_run *run = calloc(1, sizeof *run);
     if (run == NULL) {
         return tool_fail(GLTF_FAILED, "there is no memory for the scene");
     }
-    int status = input_scene(path, &run->scene);
+    int status = source_load(path, &run->scene);
     if (status != 0) {
         gltf_scene_free(&run->scene);
         free(run);
@@ -78,13 +78,13 @@ int profile_open_scene(profile_source *source, const char *path, const gltf_buil
     run->options = *options;
     run->options.profile_capacity = RING;
     run->path = path;
-    input_name(path, source->name, sizeof source->name);
-    source->bodies = run->scene.body_count, source->shapes = run->scene.collider_count;
-    source->joints = run->scene.joint_count;
-    source->steps = steps == UINT64_MAX ? run->scene.steps : (uint32_t)steps;
-    source->dt = run->scene.dt;
-    source->inner = run;
-    source->begin = begin, source->step = step, source->end = end;
-    source->name_of = name_of, source->close = close_scene;
+    source_name(path, from->name, sizeof from->name);
+    from->bodies = run->scene.body_count, from->shapes = run->scene.collider_count;
+    from->joints = run->scene.joint_count;
+    from->steps = steps == UINT64_MAX ? run->scene.steps : (uint32_t)steps;
+    from->dt = run->scene.dt;
+    from->inner = run;
+    from->begin = begin, from->step = step, from->end = end;
+    from->name_of = name_of, from->close = close_scene;
     return 0;
 }

@@ -82,7 +82,7 @@ void report_for_people(const run_options *options, const gltf_scene *scene, cons
         printf("  %s\n", scene->note);
     }
     printf("%" PRIu32 " steps of %g s, %" PRIu32 " sub-steps, %" PRIu32 " iterations, sleep %s, %s\n", r->steps,
-           (double)r->dt, r->substeps, r->iterations, options->build.no_sleep ? "off" : "on",
+           (double)r->dt, r->substeps, r->iterations, options->source.build.no_sleep ? "off" : "on",
            talus_isa_name((talus_isa)r->isa));
     printf("\nstep time, ms: mean %.4f   p50 %.4f   p99 %.4f   p99.9 %.4f   max %.4f\n", r->ms.mean, r->ms.p50,
            r->ms.p99, r->ms.p999, r->ms.max);
@@ -175,7 +175,7 @@ void report_json(const run_options *options, const gltf_scene *scene, const gltf
     gltf_text_add(&out, ",\"dt\":%.9g,\"threads\":1", (double)r->dt);
     add_count(&out, "substeps", r->substeps);
     add_count(&out, "iterations", r->iterations);
-    gltf_text_add(&out, ",\"sleep\":%s,\"isa\":\"%s\"", options->build.no_sleep ? "false" : "true",
+    gltf_text_add(&out, ",\"sleep\":%s,\"isa\":\"%s\"", options->source.build.no_sleep ? "false" : "true",
                   talus_isa_name((talus_isa)r->isa));
     add_number(&out, "ms_per_step_mean", r->ms.mean);
     add_number(&out, "ms_per_step_p50", r->ms.p50);

@@ -4,12 +4,10 @@
 #include "gltf/animate.h"
 #include "host/clock.h"
 #include "host/file.h"
-#include "input.h"
 #include "tool.h"
 #include "trajectory.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,16 +18,10 @@
 
 /* --- options --- */
 
-enum { OUT = 1, STEPS, DT, SUBSTEPS, ITERATIONS, ISA, THREADS, NO_SLEEP, JSON, PROFILE, ANIMATE, QUIET, HELP };
+enum { OUT = SOURCE_OPTION_COUNT, JSON, PROFILE, ANIMATE, QUIET, HELP };
 
-static const struct option long_options[] = {{"out", required_argument, NULL, OUT},
-                                             {"steps", required_argument, NULL, STEPS},
-                                             {"dt", required_argument, NULL, DT},
-                                             {"substeps", required_argument, NULL, SUBSTEPS},
-                                             {"isa", required_argument, NULL, ISA},
-                                             {"iterations", required_argument, NULL, ITERATIONS},
-                                             {"threads", required_argument, NULL, THREADS},
-                                             {"no-sleep", no_argument, NULL, NO_SLEEP},
+static const struct option long_options[] = {SOURCE_LONG_OPTIONS,
+                                             {"out", required_argument, NULL, OUT},
                                              {"json", no_argument, NULL, JSON},
                                              {"profile", no_argument, NULL, PROFILE},
                                              {"quiet", no_argument, NULL, QUIET},
@@ -39,39 +31,12 @@ static const struct option long_options[] = {{"out", required_argument, NULL, OU
 
 /* Reads one option; an exit status, or 0. */
 static int take_option(int option, run_options *out) {
-    uint64_t number = 0;
     switch (option) {
     case OUT:
         out->out = optarg;
         return 0;
     case ANIMATE:
         out->animate = optarg;
-        return 0;
-    case STEPS:
-        return input_whole("--steps", optarg, 0, INPUT_MAX_STEPS, &out->steps) ? 0 : TOOL_USAGE;
-    case DT:
-        return input_number("--dt", optarg, "seconds", 1e-6, 1, &out->dt) ? 0 : TOOL_USAGE;
-    case SUBSTEPS:
-        if (!input_whole("--substeps", optarg, 1, TALUS_MAX_SUBSTEPS, &number)) {
-            return TOOL_USAGE;
-        }
-        out->build.substeps = (uint32_t)number;
-        return 0;
-    case ITERATIONS:
-        if (!input_whole("--iterations", optarg, 1, TALUS_MAX_ITERATIONS, &number)) {
-            return TOOL_USAGE;
-        }
-        out->build.iterations = (uint32_t)number;
-        return 0;
-    case THREADS:
-        if (!input_whole("--threads", optarg, 1, 1024, &number)) {
-            return TOOL_USAGE;
-        }
-        return number == 1 ? 0 : tool_fail(GLTF_UNSUPPORTED, "--threads: a step runs on one thread");
-    case ISA:
-        return input_isa(optarg, &out->build.isa);
-    case NO_SLEEP:
-        out->build.no_sleep = 1;
         return 0;
     case JSON:
         out->json = 1;
@@ -83,7 +48,8 @@ static int take_option(int option, run_options *out) {
         out->quiet = 1;
         return 0;
     default:
-        return tool_fail(TOOL_USAGE, "see: talus help run");
+        return option > 0 && option < SOURCE_OPTION_COUNT ? source_take_option(option, optarg, &out->source)
+                                                          : tool_fail(TOOL_USAGE, "see: talus help run");
     }
 }
 
@@ -201,7 +167,7 @@ static int run_steps(runner *r) {
             talus_world_step(&r->world->world, out->dt, timed ? &clock : NULL, timed ? &profile : NULL);
         uint64_t end = host_clock_ns();
         if (status != TALUS_OK) {
-            return tool_fail(GLTF_FAILED, "%s: step %lu: %s", r->options->scene, (unsigned long)step,
+            return tool_fail(GLTF_FAILED, "%s: step %lu: %s", r->options->source.scene, (unsigned long)step,
                              talus_status_text(status));
         }
         out->step_ms[step - 1] = (double)(end - start) * 1e-6;
@@ -267,34 +233,28 @@ static int run_world(const run_options *options, const gltf_scene *scene, gltf_w
     return status;
 }
 
-static int run_scene(const run_options *options, const gltf_scene *scene) {
-    gltf_world world;
-    gltf_error error;
+static int run_source(const run_options *options, source *from) {
     run_result result;
     memset(&result, 0, sizeof result);
-    if (gltf_build(scene, &options->build, &world, &error) != GLTF_OK) {
-        return tool_fail((int)error.status, "%s: %s", options->scene, error.text);
-    }
     talus_world_def def;
     memset(&def, 0, sizeof def);
-    talus_world_get_def(&world.world, &def);
-    input_name(options->scene, result.name, sizeof result.name);
-    result.dt = options->dt > 0 ? (float)options->dt : scene->dt;
-    result.steps = options->steps == UINT64_MAX ? scene->steps : (uint32_t)options->steps;
+    talus_world_get_def(&from->world.world, &def);
+    memcpy(result.name, from->name, sizeof result.name);
+    result.dt = from->dt;
+    result.steps = from->steps;
     result.substeps = def.substeps;
     result.iterations = def.iterations;
-    result.isa = (uint32_t)talus_world_get_isa(&world.world);
-    int status = run_world(options, scene, &world, &result);
+    result.isa = (uint32_t)talus_world_get_isa(&from->world.world);
+    int status = run_world(options, &from->scene, &from->world, &result);
     if (status == 0) {
         result.ms = figures_of(result.step_ms, result.steps);
         if (options->json) {
-            report_json(options, scene, &world, &result);
+            report_json(options, &from->scene, &from->world, &result);
         } else if (!options->quiet) {
-            report_for_people(options, scene, &world, &result);
+            report_for_people(options, &from->scene, &from->world, &result);
         }
     }
     free(result.step_ms);
-    gltf_world_free(&world);
     return status;
 }
 
@@ -303,8 +263,7 @@ int tool_run(int count, char **arguments) {
     run_options options;
     arguments[0] = name;
     memset(&options, 0, sizeof options);
-    options.steps = UINT64_MAX;
-    options.build.isa = TALUS_ISA_BEST;
+    options.source = source_options_default();
     for (int option; (option = getopt_long(count, arguments, "", long_options, NULL)) != -1;) {
         int status = option == HELP ? 0 : take_option(option, &options);
         if (option == HELP) {
@@ -318,12 +277,12 @@ int tool_run(int count, char **arguments) {
         return tool_fail(TOOL_USAGE, "run: %s; see: talus help run",
                          optind < count ? "one scene at a time" : "the name of a scene is missing");
     }
-    options.scene = arguments[optind];
-    gltf_scene scene;
-    int status = input_scene(options.scene, &scene);
+    options.source.scene = arguments[optind];
+    source from;
+    int status = source_open(&from, &options.source);
     if (status == 0) {
-        status = run_scene(&options, &scene);
-        gltf_scene_free(&scene);
+        status = run_source(&options, &from);
+        source_close(&from);
     }
     return status;
 }

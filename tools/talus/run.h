@@ -3,15 +3,11 @@
 #define TALUS_TOOL_RUN_H
 
 #include "figures.h"
-#include "gltf/build.h"
-#include "gltf/scene.h"
+#include "source.h"
 
 typedef struct run_options {
-    const char *scene; /* a path, or '@' and the name of an own scene */
+    source_options source;
     const char *out, *animate;
-    gltf_build_options build;
-    double dt;      /* s; 0: the scene's */
-    uint64_t steps; /* UINT64_MAX: the scene's */
     int json, profile, quiet;
 } run_options;
 

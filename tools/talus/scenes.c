@@ -87,6 +87,19 @@ static void make_pile(author *a) {
     }
 }
 
+static void make_heap(author *a) {
+    parts_random random = {11};
+    int material = author_material(a, 0.5, 0.1, NULL);
+    parts_ground(a, 20, material);
+    parts_walls(a, 0, 0, 8, 8, 12, material);
+    for (uint32_t i = 0; i < 1000; i++) {
+        author_part part = i % 2 ? author_sphere(a, 0.4) : author_box(a, 0.8, 0.8, 0.8);
+        gltf_double3 shift = gltf_d3(parts_uniform(&random, -0.2, 0.2), 0, parts_uniform(&random, -0.2, 0.2));
+        author_pose at = parts_pose(gltf_add3(parts_layer(i, 10, 10, 1.4, 1), shift), parts_rotation(&random));
+        author_add_body(a, part, at, material, NULL);
+    }
+}
+
 static void make_tower(author *a) {
     int material = author_material(a, 0.6, 0, NULL);
     parts_ground(a, 60, material);
@@ -212,12 +225,13 @@ typedef struct scene_maker {
     uint32_t steps; /* of 1/60 s */
 } scene_maker;
 
-#define SCENES 12
+#define SCENES 13
 
 static const scene_info infos[SCENES] = {
     {"bridge", "48 hinged planks between two posts, loaded with boxes"},
     {"chain", "a chain with a ball 100 times as heavy as a link, released level, and a hanging one"},
     {"dominoes", "200 stones in a spiral; the first one falls"},
+    {"heap", "1000 boxes and balls dropped into a bin"},
     {"masses", "columns of five boxes, the top one up to 1000 times as heavy"},
     {"pile", "400 rocks (convex hulls) dropped into a bin"},
     {"pyramid", "210 boxes as a wall that should stay as it is"},
@@ -230,9 +244,9 @@ static const scene_info infos[SCENES] = {
 };
 
 static const scene_maker makers[SCENES] = {
-    {make_bridge, 600},   {make_chain, 600},   {make_dominoes, 1000}, {make_masses, 600},
-    {make_pile, 500},     {make_pyramid, 300}, {make_ragdolls, 400},  {make_shapes, 400},
-    {make_showcase, 900}, {make_stack, 600},   {make_tower, 400},     {make_wheel, 400},
+    {make_bridge, 600}, {make_chain, 600},   {make_dominoes, 1000}, {make_heap, 600},   {make_masses, 600},
+    {make_pile, 500},   {make_pyramid, 300}, {make_ragdolls, 400},  {make_shapes, 400}, {make_showcase, 900},
+    {make_stack, 600},  {make_tower, 400},   {make_wheel, 400},
 };
 
 const scene_info *scenes_list(size_t *count) {

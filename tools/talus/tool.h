@@ -6,7 +6,9 @@
 
 /* Besides those of gltf_status. */
 #define TOOL_USAGE 2
-#define TOOL_SLOW 5 /* it was done, and took longer than asked for */
+#define TOOL_SLOW 7     /* it was done, and took longer than asked for */
+#define TOOL_DIVERGED 5 /* two runs part */
+#define TOOL_SHORTER 6  /* they are the same as far as the shorter one goes */
 
 /* "talus: " and a line on the standard error; returns `status`. */
 int tool_fail(int status, const char *format, ...) GLTF_PRINTF(2, 3);
@@ -15,6 +17,9 @@ int tool_fail(int status, const char *format, ...) GLTF_PRINTF(2, 3);
 int tool_run(int count, char **arguments);
 int tool_profile(int count, char **arguments);
 int tool_scene(int count, char **arguments);
+int tool_record(int count, char **arguments);
+int tool_replay(int count, char **arguments);
+int tool_diff(int count, char **arguments);
 
 /* Says whether the profile saved in B is slower than that in A, on the standard output: TOOL_SLOW then. An exit status.
  */

@@ -119,7 +119,7 @@ static int count_quiet(tl_header *h, uint32_t b, float dt) {
 }
 
 void tl_stage_sleep(tl_header *h, float dt) {
-    int any = 0;
+    int any = 0, stopped = 0;
     for (uint32_t k = h->awake_bodies; k-- > 0;) {
         uint32_t b = tl_awake_body(h)[k];
         if (tl_body_is_dynamic(h, b)) {
@@ -127,8 +127,13 @@ void tl_stage_sleep(tl_header *h, float dt) {
         } else if (!tl_bodies(h)[b].moves) {
             tl_body_clear_awake(h, b);
             tl_shapes_settle(h, b);
+            stopped = 1;
             tl_contacts_refresh(h, b); /* their points were on the body and are in the world from now on */
         }
+    }
+    if (stopped) {
+        tl_lists_of_awake(h);
+        tl_lists_drop_sleeping(h);
     }
     h->counters.sleep_searched = any && h->settings.enable_sleep;
     if (h->counters.sleep_searched) {

@@ -21,7 +21,7 @@
     X(body_motion, uint32_t, BODY, COMMIT, STATE, 4)                                                                   \
     X(bodies, tl_body_meta, BODY, COMMANDS, STATE, 4)                                                                  \
     X(body_quiets, tl_body_quiet, BODY, SLEEP, STATE, 4)                                                               \
-    X(body_colors, uint64_t, BODY, ISLANDS, STATE, 8)                                                                  \
+    X(body_colors, uint64_t, BODY, ISLANDS, INDEX, 8)                                                                  \
     X(body_mass, talus_mass, BODY, COMMANDS, STATE, 4)                                                                 \
     X(body_user, uint64_t, BODY, COMMANDS, STATE, 8)                                                                   \
     X(body_previous, tl_row8, BODY, COMMIT, INDEX, 4)                                                                  \
@@ -53,7 +53,7 @@
     X(points, tl_contact_points, CONTACT, NARROW, STATE, 4)                                                            \
     X(contacts, tl_contact_meta, CONTACT, NARROW, STATE, 4)                                                            \
     X(contact_caches, tl_pair_cache, CONTACT, NARROW, STATE, 4)                                                        \
-    X(contact_materials, tl_contact_material, CONTACT, NARROW, STATE, 4)                                               \
+    X(contact_materials, tl_contact_material, CONTACT, NARROW, INDEX, 4)                                               \
     X(contact_pair, uint32_t, CONTACT, NARROW, INDEX, 4)                                                               \
     X(contact_alive, uint64_t, CONTACTBIT, NARROW, INDEX, 8)                                                           \
     X(contact_awake, uint64_t, CONTACTBIT, NARROW, INDEX, 8)                                                           \

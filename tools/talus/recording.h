@@ -1,0 +1,22 @@
+/* A recording's file with the world that it is replayed in. */
+#ifndef TALUS_TOOL_RECORDING_H
+#define TALUS_TOOL_RECORDING_H
+
+#include "talus/talus.h"
+
+typedef struct recording {
+    const char *path;
+    unsigned char *bytes;
+    size_t size;
+    talus_replay replay;
+    talus_world world; /* in the state before the first step */
+    size_t block_bytes;
+    void *block_memory, *geometry_memory; /* as they were allocated */
+} recording;
+
+/* Reads a recording, looks it through and makes its world; 0, or an exit status with what is wrong in `text` and
+ * nothing to close. */
+int recording_open(recording *out, const char *path, char *text, size_t room);
+void recording_close(recording *r);
+
+#endif
