@@ -13,7 +13,7 @@ flags="-std=c99 -ffp-contract=off -fno-strict-aliasing -Iinclude -Isrc -Iplatfor
 
 # A step that was handed a talus_profile answers with zeros: that much of tl_watch_stop stays.
 cut() {
-    sed -e 's/^ *tl_watch_stop(&w, world, profile);/    if (profile) { static const talus_profile nothing; *profile = nothing; }/' \
+    sed -e 's/^ *tl_watch_stop(&w, world, \(.*\));/    if (\1) { static const talus_profile nothing; *\1 = nothing; }/' \
         -e '/^ *tl_watch_[a-z]*(/d' -e '/^ *tl_ties_changed(/d' -e '/^ *tl_watch w;$/d' -e '/watch\.h"$/d' \
         -e 's/, tl_watch \*w)/)/; s/, &w)/)/; s/, w)/)/' "$1"
 }
