@@ -80,7 +80,7 @@ TEST_LINK = $(if $(HELP_CXX),$(CXX),$(CC))
 
 HAS_CJSON := $(shell printf '\#include <cjson/cJSON.h>\n' | $(CC) $(CFLAGS) -E - >/dev/null 2>&1 && echo yes)
 
-.PHONY: all lib tool run test bench profile-cost sanitize fuzz golden golden-update lint format install deps deps-full ci clean help FORCE
+.PHONY: all lib tool run test bench profile-cost snapshot-cost sanitize fuzz golden golden-update lint format install deps deps-full ci clean help FORCE
 .DELETE_ON_ERROR:
 
 all: lib $(if $(HAS_CJSON),tool,no-tool)
@@ -100,6 +100,7 @@ help:
 	@echo "make fuzz           every fuzzer for FUZZ_TIME=$(FUZZ_TIME) seconds"
 	@echo "make bench          own scenes and where their time goes"
 	@echo "make profile-cost   what the profiler costs when it is on"
+	@echo "make snapshot-cost  what a snapshot takes, in bytes and beside a memcpy"
 	@echo "make lint           symbols, includes, headers, format"
 	@echo "make format         clang-format over the tree"
 	@echo "make install        headers, library, tool, package files to PREFIX=$(PREFIX) (DESTDIR is put before it)"
@@ -214,12 +215,12 @@ run: tool
 bench: tool
 	@sh tools/ci/bench.sh $(TOOL)
 
-COST = $(BUILD)/tools/bench/profile_cost$(EXE)
-$(COST): $(BUILD)/tools/bench/profile_cost.o $(TOOLS_LIB) $(LIB)
+COSTS = $(BUILD)/tools/bench/profile_cost$(EXE) $(BUILD)/tools/bench/snapshot_cost$(EXE)
+$(COSTS): %$(EXE): %.o $(TOOLS_LIB) $(LIB)
 	@echo "  LD $@"
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $^ -lm -o $@
-profile-cost: $(COST)
-	$(RUN) $(COST)
+profile-cost snapshot-cost: %-cost: $(BUILD)/tools/bench/%_cost$(EXE)
+	$(RUN) $<
 
 lint: lib
 	@sh tools/ci/check-symbols.sh $(LIB)

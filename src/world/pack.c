@@ -3,15 +3,8 @@
 #define BLOCK 32u /* bytes */
 #define RUN 256u
 
-static int is_big_endian(void) {
-    const uint16_t one = 1;
-    unsigned char first;
-    memcpy(&first, &one, 1);
-    return first == 0;
-}
-
 /* The word of a block that comes k-th: of members of eight bytes the low half comes first. */
-static size_t place_of(size_t k, size_t word) { return word == 8u && is_big_endian() ? k ^ 1u : k; }
+static size_t place_of(size_t k, size_t word) { return word == 8u && tl_low_byte_last() ? k ^ 1u : k; }
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
@@ -31,10 +24,40 @@ static uint32_t difference(const unsigned char *now, const unsigned char *before
     return mask;
 }
 
-/* Writes the words in which two blocks differ; returns where it ended, p if they are alike. */
-static unsigned char *pack_block(unsigned char *p, const unsigned char *now, const unsigned char *before, size_t bytes,
-                                 size_t word) {
-    if (bytes == BLOCK && !is_big_endian()) { /* the same as below, the usual cases by whole copies */
+/* What is expected of a word: as a row before, or where rows count, as much more than that as that was more than the
+ * row before it. */
+static uint32_t guess(const unsigned char *before, const unsigned char *earlier, size_t at) {
+    uint32_t b, c;
+    if (!before) {
+        return 0;
+    }
+    memcpy(&b, before + at, 4);
+    if (!earlier) {
+        return b;
+    }
+    memcpy(&c, earlier + at, 4);
+    return 2u * b - c;
+}
+
+/* Whether a whole block goes on as its rows did before. */
+static int counts_on(const unsigned char *now, const unsigned char *before, const unsigned char *earlier) {
+    uint32_t a[8], b[8], c[8], other = 0;
+    memcpy(a, now, BLOCK);
+    memcpy(b, before, BLOCK);
+    memcpy(c, earlier, BLOCK);
+    for (unsigned k = 0; k < 8u; k++) {
+        other |= a[k] ^ (2u * b[k] - c[k]);
+    }
+    return !other;
+}
+
+/* Writes the words of a block that are not as expected; returns where it ended, p if all are. */
+static unsigned char *pack_block(unsigned char *p, const unsigned char *now, const unsigned char *before,
+                                 const unsigned char *earlier, size_t bytes, size_t word) {
+    if (earlier && bytes == BLOCK && counts_on(now, before, earlier)) {
+        return p;
+    }
+    if (!earlier && before && bytes == BLOCK && !tl_low_byte_last()) { /* the usual cases by whole copies */
         uint32_t mask = difference(now, before);
         if (mask == 0) {
             return p;
@@ -48,9 +71,9 @@ static unsigned char *pack_block(unsigned char *p, const unsigned char *now, con
     uint32_t mask = 0;
     unsigned char *q = p + 1;
     for (size_t k = 0; k < bytes / 4u; k++) {
-        uint32_t a, b;
-        memcpy(&a, now + 4u * place_of(k, word), 4);
-        memcpy(&b, before + 4u * place_of(k, word), 4);
+        size_t at = 4u * place_of(k, word);
+        uint32_t a, b = guess(before, earlier, at);
+        memcpy(&a, now + at, 4);
         tl_put_word(q, a);
         q += a != b ? 4 : 0;
         mask |= (uint32_t)(a != b) << k;
@@ -59,21 +82,33 @@ static unsigned char *pack_block(unsigned char *p, const unsigned char *now, con
     return mask ? q : p;
 }
 
-unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, size_t stride, size_t word) {
-    static const unsigned char zero[BLOCK];
+/* Where the rows before a place are, null where there are none; `earlier` only if rows count. */
+typedef struct rows_before {
+    const unsigned char *before, *earlier;
+} rows_before;
+
+static rows_before before_of(const unsigned char *data, size_t at, size_t stride, int counting) {
+    size_t first = first_of(stride);
+    rows_before r = {at >= first ? data + at - stride : NULL,
+                     counting && at >= 2u * first ? data + at - 2u * stride : NULL};
+    return r;
+}
+
+unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, size_t stride, size_t word,
+                            int counting) {
     const unsigned char *data = rows;
     size_t bytes = count * stride, first = first_of(stride);
     for (size_t at = 0; at < bytes;) {
         size_t run = least(RUN, bytes - at);
         unsigned char *blocks = p++;
         *blocks = 0;
-        if (at >= first && memcmp(data + at, data + at - stride, run) == 0) {
+        if (!counting && at >= first && memcmp(data + at, data + at - stride, run) == 0) {
             at += run;
             continue;
         }
         for (unsigned k = 0; k < RUN / BLOCK && at < bytes; k++, at += least(BLOCK, bytes - at)) {
-            const unsigned char *before = at >= first ? data + at - stride : zero;
-            unsigned char *q = pack_block(p, data + at, before, least(BLOCK, bytes - at), word);
+            rows_before r = before_of(data, at, stride, counting);
+            unsigned char *q = pack_block(p, data + at, r.before, r.earlier, least(BLOCK, bytes - at), word);
             *blocks = (unsigned char)(*blocks | (q != p) << k);
             p = q;
         }
@@ -86,31 +121,44 @@ size_t tl_pack_bound(size_t count, size_t stride) {
     return bytes + bytes / BLOCK + bytes / RUN + 2u + 32u;
 }
 
+static uint32_t bits_of(uint32_t x) {
+    uint32_t n = 0;
+    for (; x; x &= x - 1u) {
+        n++;
+    }
+    return n;
+}
+
 static void put_mark(const tl_marks *marks, size_t row) {
     uint32_t *m = marks->first + row * marks->stride;
     *m = *m < marks->value ? marks->value : *m;
 }
 
-/* Puts a block in its place and marks its rows if that changes them. */
-static void place_block(unsigned char *to, size_t at, const uint32_t *block, size_t size, size_t stride,
-                        const tl_marks *marks) {
-    if (size == BLOCK) {
-        if (difference(to + at, (const unsigned char *)block) == 0) {
-            return;
-        }
-        memcpy(to + at, block, BLOCK);
-    } else {
-        memcpy(to + at, block, size);
+/* Puts a block in its place: words of `mask` from p, the others from the row before. Returns where it ended, or null;
+ * *other is not 0 if that changes the block. */
+static const unsigned char *unpack_block(const unsigned char *p, const unsigned char *end, unsigned char *to,
+                                         rows_before rows, size_t bytes, size_t word, uint32_t mask, uint32_t *other) {
+    if (end - p < (ptrdiff_t)(4u * 8u) && end - p < (ptrdiff_t)(4u * bits_of(mask))) {
+        return NULL;
     }
-    if (marks) {
-        for (size_t row = at / stride; row <= (at + size - 1u) / stride; row++) {
-            put_mark(marks, row);
+    for (size_t k = 0; k < bytes / 4u; k++) {
+        size_t at = 4u * place_of(k, word);
+        uint32_t was, w;
+        memcpy(&was, to + at, 4);
+        if (mask >> k & 1u) {
+            w = tl_get_word(p);
+            p += 4;
+        } else { /* a row before may lie in this very block */
+            w = guess(rows.before, rows.earlier, at);
         }
+        *other |= w ^ was;
+        memcpy(to + at, &w, 4);
     }
+    return p;
 }
 
 const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char *end, void *rows, size_t count,
-                                    size_t stride, size_t word, const tl_marks *marks) {
+                                    size_t stride, size_t word, int counting, const tl_marks *marks) {
     unsigned char *data = rows;
     size_t bytes = count * stride, first = first_of(stride);
     for (size_t at = 0; at < bytes;) {
@@ -119,71 +167,56 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
         }
         uint32_t blocks = *p++;
         size_t run = least(RUN, bytes - at);
-        if (blocks == 0 && at >= first && memcmp(data + at, data + at - stride, run) == 0) {
+        if (!counting && blocks == 0 && at >= first && memcmp(data + at, data + at - stride, run) == 0) {
             at += run; /* as it should be */
             continue;
         }
         for (unsigned k = 0; k < RUN / BLOCK && at < bytes; k++, at += least(BLOCK, bytes - at)) {
             size_t size = least(BLOCK, bytes - at);
-            uint32_t block[8] = {0};
-            uint32_t mask = 0;
+            uint32_t mask = 0, other = 0;
             if (blocks >> k & 1u) {
                 if (p >= end) {
                     return NULL;
                 }
                 mask = *p++;
             }
-            if (at >= first && stride >= BLOCK && mask != 0xffu) {
-                memcpy(block, data + at - stride, size);
+            rows_before r = before_of(data, at, stride, counting);
+            p = unpack_block(p, end, data + at, r, size, word, mask, &other);
+            if (!p) {
+                return NULL;
             }
-            for (size_t j = 0; (mask || stride < BLOCK) && j < size / 4u; j++) {
-                size_t to = place_of(j, word);
-                if (mask >> j & 1u) {
-                    if (end - p < 4) {
-                        return NULL;
-                    }
-                    block[to] = tl_get_word(p);
-                    p += 4;
-                } else if (at >= first && stride < BLOCK) { /* a row before may lie in this very block */
-                    size_t back = stride / 4u;
-                    if (to >= back) {
-                        block[to] = block[to - back];
-                    } else {
-                        memcpy(&block[to], data + at + 4u * to - stride, 4);
-                    }
-                }
+            for (size_t row = at / stride; marks && other && row <= (at + size - 1u) / stride; row++) {
+                put_mark(marks, row);
             }
-            place_block(data, at, block, size, stride, marks);
         }
     }
     return p;
 }
 
+static uint64_t long_word(const unsigned char *p) {
+    uint64_t w;
+    memcpy(&w, p, 8);
+    return tl_low_byte_last() ? (uint64_t)tl_get_word(p + 4) << 32 | tl_get_word(p) : w;
+}
+
 /* Sums of words of eight bytes and sums of those sums in four interleaved streams: Fletcher, "An arithmetic checksum
  * for serial transmissions", IEEE Trans. Communications 30(1), 1982. */
 uint64_t tl_pack_checksum(const unsigned char *p, size_t bytes) {
-    uint64_t sum[4] = {1, 2, 3, 4}, twice[4] = {0, 0, 0, 0};
+    uint64_t a = 1, b = 2, c = 3, d = 4, aa = 0, bb = 0, cc = 0, dd = 0;
     size_t at = 0;
     for (; bytes - at >= 32u; at += 32u) {
-        for (unsigned k = 0; k < 4u; k++) {
-            uint64_t w;
-            memcpy(&w, p + at + 8u * k, 8);
-            if (is_big_endian()) {
-                w = (uint64_t)tl_get_word(p + at + 8u * k + 4u) << 32 | tl_get_word(p + at + 8u * k);
-            }
-            sum[k] += w;
-            twice[k] += sum[k];
-        }
+        a += long_word(p + at), b += long_word(p + at + 8), c += long_word(p + at + 16), d += long_word(p + at + 24);
+        aa += a, bb += b, cc += c, dd += d;
     }
     for (; at < bytes; at++) {
-        sum[0] += p[at];
-        twice[0] += sum[0];
+        a += p[at];
+        aa += a;
     }
+    const uint64_t sums[8] = {a, aa, b, bb, c, cc, d, dd};
     uint64_t mix = bytes;
-    for (unsigned k = 0; k < 4u; k++) {
-        mix = (mix ^ sum[k]) * 0x9e3779b97f4a7c15u;
-        mix = (mix ^ mix >> 29 ^ twice[k]) * 0xbf58476d1ce4e5b9u;
-        mix ^= mix >> 32;
+    for (unsigned k = 0; k < 8u; k++) {
+        mix = (mix ^ sums[k]) * 0x9e3779b97f4a7c15u;
+        mix ^= mix >> 29;
     }
     return mix;
 }

@@ -15,7 +15,17 @@ static inline unsigned char *tl_put_word(unsigned char *p, uint32_t w) {
 static inline uint32_t tl_get_word(const unsigned char *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
+static inline int tl_low_byte_last(void) {
+    const uint16_t one = 1;
+    unsigned char first;
+    memcpy(&first, &one, 1);
+    return first == 0;
+}
 static inline unsigned char *tl_put_words(unsigned char *p, const void *words, size_t count) {
+    if (!tl_low_byte_last()) {
+        memcpy(p, words, 4u * count);
+        return p + 4u * count;
+    }
     for (size_t i = 0; i < count; i++) {
         uint32_t w;
         memcpy(&w, (const unsigned char *)words + 4u * i, 4);
@@ -24,6 +34,10 @@ static inline unsigned char *tl_put_words(unsigned char *p, const void *words, s
     return p;
 }
 static inline void tl_get_words(const unsigned char *p, void *words, size_t count) {
+    if (!tl_low_byte_last()) {
+        memcpy(words, p, 4u * count);
+        return;
+    }
     for (size_t i = 0; i < count; i++) {
         uint32_t w = tl_get_word(p + 4u * i);
         memcpy((unsigned char *)words + 4u * i, &w, 4);
@@ -32,8 +46,8 @@ static inline void tl_get_words(const unsigned char *p, void *words, size_t coun
 
 /* Rows of `stride` bytes, a multiple of `word` (4 or 8, the size of the members). In runs of 256 bytes: a byte that
  * says which blocks of 32 bytes differ from what lies a row before, for each of those a byte that says which words do,
- * and the words. Returns where it ended. */
-unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, size_t stride, size_t word);
+ * and the words. With `counting`, words are expected to grow as they did from row to row. Returns where it ended. */
+unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, size_t stride, size_t word, int counting);
 /* The most bytes that tl_pack_rows writes. */
 size_t tl_pack_bound(size_t count, size_t stride);
 
@@ -45,7 +59,7 @@ typedef struct tl_marks {
     uint32_t value;
 } tl_marks;
 const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char *end, void *rows, size_t count,
-                                    size_t stride, size_t word, const tl_marks *marks);
+                                    size_t stride, size_t word, int counting, const tl_marks *marks);
 
 /* A 64-bit checksum, not against an adversary. */
 uint64_t tl_pack_checksum(const unsigned char *p, size_t bytes);

@@ -8,11 +8,6 @@
 void tl_reindex_begin(tl_header *h, uint32_t bodies) {
     uint32_t rows = bodies > h->bodies.high ? bodies : h->bodies.high;
     memset(tl_island_parent(h), 0, rows * sizeof(uint32_t));
-    for (uint32_t c = 0; c < h->contacts.high; c++) {
-        if (tl_bit_has(tl_contact_alive(h), c)) {
-            tl_pairs(h)[tl_contact_pair(h)[c]].contact = TL_NONE;
-        }
-    }
     for (uint32_t i = 0; i < h->joints.high; i++) {
         const tl_joint_record *j = &tl_joints(h)[i];
         tl_joint_group *was = &tl_joint_group_pool(h)[i];
@@ -186,16 +181,13 @@ static void renew_awake(tl_header *h) {
     }
 }
 
-static void renew_bodies(tl_header *h, uint32_t before) {
+/* The rings of those that fell asleep together, and lists of bodies that there were not. */
+static void renew_rings(tl_header *h, uint32_t before) {
     tl_body_link *links = tl_body_links(h);
     for (uint32_t i = 0; i < h->bodies.high; i++) {
         links[i].sleep_next = TL_NONE;
         if (i >= before) {
             links[i].first_pair = TL_NONE;
-        }
-        tl_body_colors(h)[i] = 0;
-        if (tl_bodies(h)[i].flags & TL_BODY_AWAKE) {
-            tl_body_previous(h)[i] = tl_body_pose(h)[i];
         }
     }
     for (uint32_t i = 0; i < h->bodies.high; i++) {
@@ -280,27 +272,40 @@ static void renew_joints(tl_header *h) {
     }
 }
 
-talus_status tl_reindex_end(tl_header *h, const tl_header *before) {
-    if (!bodies_are_sound(h) || !shapes_are_sound(h) || !joints_are_sound(h)) {
-        return TALUS_BAD_BLOB;
-    }
-    renew_bodies(h, before->bodies.high);
+talus_status tl_reindex_end(tl_header *h, const tl_header *before, const tl_changes *changes) {
     uint32_t shapes = before->shapes.high > h->shapes.high ? before->shapes.high : h->shapes.high;
     uint32_t bodies = before->bodies.high > h->bodies.high ? before->bodies.high : h->bodies.high;
-    if (any_other(h, bodies, shapes)) {
+    int other = any_other(h, bodies, shapes);
+    if ((changes->metas && (!bodies_are_sound(h) || !joints_are_sound(h))) || (other && !shapes_are_sound(h))) {
+        return TALUS_BAD_BLOB;
+    }
+    if (changes->metas) {
+        renew_rings(h, before->bodies.high);
+    }
+    if (other) {
         renew_pairs(h);
         renew_shapes(h, shapes);
     }
     if (h->pairs.used > TL_APART_PER_CONTACT * h->capacity[TL_COUNT_CONTACT]) {
         drop_pairs(h); /* not to leave the contacts without room */
+        other = 1;
     }
-    tl_ties_changed(h);
-    if (!are_as_awake(h, before->bodies.high)) {
+    int others_awake = changes->metas && !are_as_awake(h, before->bodies.high);
+    if (others_awake) {
         renew_awake(h);
     }
-    renew_joints(h);
-    renew_parted(h, before->joints.high);
-    talus_status status = renew_contacts(h);
+    for (uint32_t k = 0; k < h->awake_bodies; k++) {
+        uint32_t i = tl_awake_body(h)[k];
+        tl_body_previous(h)[i] = tl_body_pose(h)[i];
+    }
+    tl_ties_changed(h);
+    talus_status status = TALUS_OK;
+    if (other || changes->metas || changes->contacts) {
+        memset(tl_body_colors(h), 0, h->bodies.high * sizeof(uint64_t));
+        renew_joints(h);
+        renew_parted(h, before->joints.high);
+        status = renew_contacts(h);
+    }
     tl_lists_of_awake(h);
     return status;
 }

@@ -36,6 +36,9 @@ static int is_packed(tl_column_id column) {
     }
 }
 
+/* Columns of indices, which mostly go up by one from row to row. */
+static int counts(tl_column_id column) { return column == TL_COLUMN_bodies || column == TL_COLUMN_shapes; }
+
 /* --- contacts --------------------------------------------------------------------------------- */
 
 /* A contact begins with a word: count (3 bits), colour (7), flags (8), whether friction is at work (1), whether the
@@ -57,9 +60,11 @@ static uint32_t contact_code(const tl_header *h, uint32_t c) {
         word_of(head->friction[0]) | word_of(head->friction[1]) | word_of(head->friction[2]) | word_of(head->twist);
     uint32_t code = m->count | m->color << 3 | m->flags << 10 | (uint32_t)(friction != 0) << 18;
     uint32_t ids = 0;
-    for (uint32_t i = 0; i < 4u; i++) { /* points beyond the count are all 0 */
+    for (uint32_t i = 0; i < m->count; i++) {
         ids |= points->p[i].id;
         code |= (uint32_t)(word_of(points->p[i].impulse) != 0) << (20u + i);
+    }
+    for (uint32_t i = 0; i < 4u; i++) {
         code |= (uint32_t)(cache->word[i] != 0) << (24u + i);
     }
     return code | (uint32_t)(ids > 0xffffu) << 19;
@@ -111,8 +116,17 @@ static size_t contact_bytes(const tl_header *h, uint32_t code) {
            count * (24u + (code >> 19 & 1u ? 4u : 2u));
 }
 
-/* Null if it is cut off or is none. */
-static const unsigned char *get_contact(const unsigned char *p, const unsigned char *end, tl_header *h, uint32_t c) {
+/* What was in a contact's slot goes: its pair is left without one. */
+static void part_contact(tl_header *h, uint32_t c) {
+    if (tl_contacts(h)[c].flags & TL_CONTACT_ALIVE) {
+        tl_pairs(h)[tl_contact_pair(h)[c]].contact = TL_NONE;
+    }
+    tl_contacts(h)[c].body_a = TL_NONE; /* says so until the contacts are tied to their pairs */
+}
+
+/* Null if it is cut off or is none. *others counts those that are not what stood in their slots. */
+static const unsigned char *get_contact(const unsigned char *p, const unsigned char *end, tl_header *h, uint32_t c,
+                                        uint32_t *others) {
     tl_contact_meta *m = &tl_contacts(h)[c];
     tl_contact_head *head = &tl_heads(h)[c];
     tl_contact_points *points = &tl_points(h)[c];
@@ -133,8 +147,9 @@ static const unsigned char *get_contact(const unsigned char *p, const unsigned c
         memset(&points->p[i], 0, sizeof points->p[i]);
     }
     if (m->shape_a != shape_a || m->shape_b != shape_b) {
-        m->body_a = TL_NONE; /* another contact than the one that was here */
+        part_contact(h, c);
     }
+    *others += m->body_a == TL_NONE || m->color != (code >> 3 & 127u);
     memset(head, 0, sizeof *head);
     memset(cache, 0, sizeof *cache);
     m->count = count, m->color = code >> 3 & 127u, m->flags = code >> 10 & 255u;
@@ -211,7 +226,7 @@ talus_status talus_world_save(const talus_world *world, void *out, size_t bytes,
     for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
         tl_live live;
         if (is_packed((tl_column_id)i) && tl_store_state(h, (tl_column_id)i, &live)) {
-            p = tl_pack_rows(p, live.data, live.rows, live.row_bytes, live.word);
+            p = tl_pack_rows(p, live.data, live.rows, live.row_bytes, live.word, counts((tl_column_id)i));
         }
     }
     const uint64_t *alive = tl_contact_alive(h);
@@ -263,10 +278,13 @@ static int is_snapshot(const tl_header *h, const unsigned char *p, size_t bytes,
 }
 
 /* What to note of the rows of a column that become others. */
-static tl_marks marks_of(const tl_header *h, tl_column_id column) {
-    tl_marks none = {NULL, 0, 0}, body = {tl_island_parent(h), 1, TL_BODY_OTHER};
+static tl_marks marks_of(const tl_header *h, tl_column_id column, tl_changes *changes) {
+    tl_marks none = {NULL, 0, 0}, meta = {&changes->metas, 0, 1}, body = {tl_island_parent(h), 1, TL_BODY_OTHER};
     tl_marks shape = {&tl_shape_tracks(h)->stale, sizeof(tl_shape_track) / 4u, TL_SHAPE_OTHER};
     switch (column) {
+    case TL_COLUMN_bodies:
+    case TL_COLUMN_joints:
+        return meta;
     case TL_COLUMN_body_pose:
     case TL_COLUMN_body_motion:
     case TL_COLUMN_body_frame:
@@ -294,22 +312,23 @@ static void clear_rows(const tl_live *live, uint32_t was, const tl_marks *marks)
 }
 
 static const unsigned char *get_columns(const unsigned char *p, const unsigned char *end, tl_header *h,
-                                        const tl_header *before) {
+                                        const tl_header *before, tl_changes *changes) {
     for (uint32_t i = 0; i < TL_COLUMN_COUNT && p; i++) {
         tl_live live;
         if (!tl_store_state(h, (tl_column_id)i, &live)) {
             continue;
         }
-        tl_marks marks = marks_of(h, (tl_column_id)i), *mark = marks.first ? &marks : NULL;
+        tl_marks marks = marks_of(h, (tl_column_id)i, changes), *mark = marks.first ? &marks : NULL;
         clear_rows(&live, tl_store_live(before, (tl_column_id)i), mark);
         if (is_packed((tl_column_id)i)) {
-            p = tl_unpack_rows(p, end, live.data, live.rows, live.row_bytes, live.word, mark);
+            p = tl_unpack_rows(p, end, live.data, live.rows, live.row_bytes, live.word, counts((tl_column_id)i), mark);
         }
     }
     return p;
 }
 
-static const unsigned char *get_contacts(const unsigned char *p, const unsigned char *end, tl_header *h) {
+static const unsigned char *get_contacts(const unsigned char *p, const unsigned char *end, tl_header *h,
+                                         uint32_t *others) {
     uint64_t *alive = tl_contact_alive(h);
     uint32_t used = 0;
     memset(alive, 0, (size_t)h->capacity[TL_COUNT_CONTACTBIT] * 8u);
@@ -322,11 +341,13 @@ static const unsigned char *get_contacts(const unsigned char *p, const unsigned 
         for (uint32_t c = w * 64u; c < h->contacts.high && c < w * 64u + 64u; c++) {
             if (!tl_bit_has(alive, c)) {
                 if (tl_contacts(h)[c].flags) {
+                    part_contact(h, c);
                     tl_contact_clear(h, c);
+                    ++*others;
                 }
                 continue;
             }
-            p = get_contact(p, end, h, c);
+            p = get_contact(p, end, h, c, others);
             used++;
             if (!p) {
                 return NULL;
@@ -348,13 +369,18 @@ talus_status talus_world_restore(talus_world *world, const void *snapshot, size_
         return TALUS_BAD_BLOB;
     }
     const unsigned char *end = p + tl_get_word(p + 4u * HEAD_BYTES);
+    tl_changes changes = {0, 0};
     tl_reindex_begin(h, next.bodies.high);
-    memcpy(state_of(h), state_of(&next), 4u * state_words());
-    p = get_columns(p + 4u * (HEAD_WORDS + state_words()), end, h, &before);
-    if (p) {
-        p = get_contacts(p, end, h);
+    for (uint32_t c = next.contacts.high; c < h->contacts.high; c++) {
+        part_contact(h, c);
+        changes.contacts++;
     }
-    if (p != end || tl_reindex_end(h, &before) != TALUS_OK) {
+    memcpy(state_of(h), state_of(&next), 4u * state_words());
+    p = get_columns(p + 4u * (HEAD_WORDS + state_words()), end, h, &before, &changes);
+    if (p) {
+        p = get_contacts(p, end, h, &changes.contacts);
+    }
+    if (p != end || tl_reindex_end(h, &before, &changes) != TALUS_OK) {
         /* Made to deceive: the checksum holds and the contents do not. Nothing of it is kept. */
         talus_world_def def;
         talus_world fresh;
