@@ -127,6 +127,8 @@ typedef struct talus_replay {
     uint32_t lost;        /* commands of the last step that were not recorded */
     size_t done;          /* bytes of the last step's commands that were carried out */
     talus_status refused; /* what the next one was answered with, if it was not TALUS_OK */
+    /* for the caller to set after opening */
+    const talus_clock *clock; /* handed to every step; null: none */
 } talus_replay;
 
 /* Looks through a whole recording, which must stay where it is. TALUS_BAD_BLOB with `fault` and

@@ -287,6 +287,9 @@ static talus_replayed do_commands(talus_replay *r, talus_world *world) {
             return TALUS_REPLAYED_REFUSED;
         }
         uint32_t index = c.index, generation = c.generation;
+        if (c.kind == TALUS_COMMAND_WORLD_STEP) {
+            c.as.step.clock = r->clock;
+        }
         r->refused = talus_world_apply(world, &c);
         if (r->refused != TALUS_OK) {
             return TALUS_REPLAYED_REFUSED;

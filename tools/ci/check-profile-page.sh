@@ -90,6 +90,15 @@ exits 4 "not a profile" --compare "$dir/pile.csv" "$dir/pile.json"
 exits 2 "other scenes" --compare "$dir/pile.json" "$dir/ragdolls.json"
 exits 2 "two files on one output" @stack --steps 2 --csv - --json
 exits 2 "a comparison with options" --compare --json "$dir/pile.json" "$dir/pile.json"
+"$tool" record @stack --steps 40 -o "$dir/stack.trec" >/dev/null
+world_hash() { sed -n 's/.*"world_hash":"\([0-9a-f]*\)".*/\1/p'; }
+a=$("$tool" profile "$dir/stack.trec" --json | world_hash)
+b=$("$tool" profile @stack --steps 40 --json | world_hash)
+[ -n "$a" ] && [ "$a" = "$b" ]
+count "a recording is profiled, to the same state as its scene" $?
+exits 2 "a recording has its own sub-steps" "$dir/stack.trec" --substeps 2
+head -c 400 "$dir/stack.trec" >"$dir/cut.trec"
+exits 4 "a recording cut off before its first state" "$dir/cut.trec"
 exits 0 "the same profile" --compare "$dir/pile.json" "$dir/pile.json"
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -204,9 +204,9 @@ int tool_diff(int count, char **arguments) {
     memset(&v, 0, sizeof v);
     v.subcommand = "diff";
     v.a = arguments[optind], v.b = arguments[optind + 1];
-    v.status = recording_open(&a, v.a, v.text, sizeof v.text);
+    v.status = recording_open(&a, v.a, 0, v.text, sizeof v.text);
     if (v.status == 0) {
-        v.status = recording_open(&b, v.b, v.text, sizeof v.text);
+        v.status = recording_open(&b, v.b, 0, v.text, sizeof v.text);
         if (v.status == 0) {
             compare(&a, &b, &v);
             recording_close(&b);

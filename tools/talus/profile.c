@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "host/clock.h"
 #include "host/file.h"
+#include "recording.h"
 #include "source.h"
 #include "timeline.h"
 #include "tool.h"
@@ -177,7 +178,13 @@ static int profile(const profile_options *options) {
     profile_source from;
     timeline t;
     live view = {options->budget_ms, 0, 0};
-    int status = profile_open_scene(&from, options->scene, &options->build, options->steps);
+    int recorded = options->scene[0] != '@' && recording_is(options->scene);
+    if (recorded && (options->build.no_sleep || options->build.substeps != 0)) {
+        return tool_fail(TOOL_USAGE, "profile: %s is a recording: sleep and sub-steps are those it was recorded with",
+                         options->scene);
+    }
+    int status = recorded ? profile_open_recording(&from, options->scene, options->build.isa, options->steps)
+                          : profile_open_scene(&from, options->scene, &options->build, options->steps);
     if (status != 0) {
         return status;
     }

@@ -56,11 +56,22 @@ static int make_world(recording *r, char *text, size_t room) {
     return 0;
 }
 
-int recording_open(recording *out, const char *path, char *text, size_t room) {
+int recording_is(const char *path) {
+    char head[8] = "";
+    FILE *file = fopen(path, "rb");
+    int is = file != NULL && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head, "TALUSREC", 8) == 0;
+    if (file != NULL) {
+        fclose(file);
+    }
+    return is;
+}
+
+int recording_open(recording *out, const char *path, uint32_t frames, char *text, size_t room) {
     memset(out, 0, sizeof *out);
     out->path = path;
     int status = read_bytes(out, text, room);
     status = status == 0 ? look_through(out, text, room) : status;
+    out->replay.def.profile_capacity = frames;
     status = status == 0 ? make_world(out, text, room) : status;
     if (status != 0) {
         recording_close(out);

@@ -14,9 +14,12 @@ typedef struct recording {
     void *block_memory, *geometry_memory; /* as they were allocated */
 } recording;
 
-/* Reads a recording, looks it through and makes its world; 0, or an exit status with what is wrong in `text` and
- * nothing to close. */
-int recording_open(recording *out, const char *path, char *text, size_t room);
+/* Whether a file begins as a recording does. */
+int recording_is(const char *path);
+
+/* Reads a recording, looks it through and makes its world, with a ring of `frames` for the profiler; 0, or an exit
+ * status with what is wrong in `text` and nothing to close. */
+int recording_open(recording *out, const char *path, uint32_t frames, char *text, size_t room);
 void recording_close(recording *r);
 
 #endif

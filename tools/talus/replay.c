@@ -151,7 +151,7 @@ int tool_replay(int count, char **arguments) {
     memset(&v, 0, sizeof v);
     v.subcommand = "replay";
     v.a = arguments[optind];
-    v.status = recording_open(&r, arguments[optind], v.text, sizeof v.text);
+    v.status = recording_open(&r, arguments[optind], 0, v.text, sizeof v.text);
     if (v.status == 0) {
         talus_world_set_isa(&r.world, options.isa);
         replay(&options, &r, &v);

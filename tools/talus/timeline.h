@@ -26,6 +26,9 @@ typedef struct profile_source {
 /* A scene; `steps` UINT64_MAX: as many as it says. An exit status, told already, or 0. */
 int profile_open_scene(profile_source *source, const char *path, const gltf_build_options *options, uint64_t steps);
 
+/* A recording, up to `steps`. */
+int profile_open_recording(profile_source *source, const char *path, talus_isa isa, uint64_t steps);
+
 typedef struct timeline {
     char name[256];
     uint32_t bodies, shapes, joints, steps, runs, substeps, iterations;
