@@ -77,7 +77,6 @@ typedef struct tl_header {
     tl_pool nodes, pairs;
     uint32_t root[2]; /* of the trees: moving, still */
     uint32_t moved_shapes, awake_bodies, awake_pairs, awake_contacts, awake_joints;
-    uint32_t pairs_missing; /* there was no room for all: shapes left in moved_shape are looked at without */
     talus_counters counters;
     tl_event_counts events;
     uint32_t groups, joint_groups, joint_rows; /* of the last step */
