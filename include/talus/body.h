@@ -64,7 +64,7 @@ talus_status talus_body_set_mass(talus_world *world, talus_body body, const talu
 talus_status talus_body_mass_from_shapes(talus_world *world, talus_body body);
 
 /* Forces (N), torques (N m) act over the whole next step; impulses (N s, N m s) at once. World axes. `at` is a world
- * point. All wake the body. */
+ * point. All wake the body. TALUS_NOT_FINITE also for what would pass what a float holds with what there is. */
 talus_status talus_body_apply_force(talus_world *world, talus_body body, talus_vec3 force, talus_vec3 at);
 talus_status talus_body_apply_torque(talus_world *world, talus_body body, talus_vec3 torque);
 talus_status talus_body_apply_impulse(talus_world *world, talus_body body, talus_vec3 impulse, talus_vec3 at);

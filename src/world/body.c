@@ -280,12 +280,16 @@ static talus_status add_force(talus_world *world, uint32_t i, talus_vec3 force, 
     if (!tl_body_is_dynamic(h, i)) {
         return TALUS_BAD_ARGUMENT;
     }
-    tl_island_wake(h, i);
     tl_row8 *f = &tl_body_force(h)[i];
     if (at) {
         torque = tl_add(torque, tl_cross(tl_sub(*at, tl_row_xyz(&tl_body_pose(h)[i])), force));
     }
-    tl_row_set6(f, tl_add(tl_row_xyz(f), force), tl_add(tl_row_345(f), torque));
+    force = tl_add(tl_row_xyz(f), force), torque = tl_add(tl_row_345(f), torque);
+    if (!tl_is_finite3(force) || !tl_is_finite3(torque)) {
+        return TALUS_NOT_FINITE;
+    }
+    tl_island_wake(h, i);
+    tl_row_set6(f, force, torque);
     tl_bodies(h)[i].flags |= TL_BODY_FORCE;
     return TALUS_OK;
 }
@@ -315,7 +319,6 @@ static talus_status add_impulse(talus_world *world, uint32_t i, talus_vec3 impul
     if (!tl_body_is_dynamic(h, i)) {
         return TALUS_BAD_ARGUMENT;
     }
-    tl_island_wake(h, i);
     tl_row8 *v = &tl_body_velocity(h)[i];
     if (at) {
         angular = tl_add(angular, tl_cross(tl_sub(*at, tl_row_xyz(&tl_body_pose(h)[i])), impulse));
@@ -325,6 +328,7 @@ static talus_status add_impulse(talus_world *world, uint32_t i, talus_vec3 impul
     if (!tl_is_finite3(linear) || !tl_is_finite3(spin)) {
         return TALUS_NOT_FINITE;
     }
+    tl_island_wake(h, i);
     memset(&tl_body_momentum(h)[i], 0, sizeof(tl_row8));
     tl_row_set6(v, linear, spin);
     return TALUS_OK;

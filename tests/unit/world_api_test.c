@@ -242,6 +242,10 @@ static void body_numbers(void **state) {
     REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_get_user_data(&world, box, NULL));
     REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_get_mass(&world, box, NULL));
     REFUSED(&world, TALUS_BAD_ARGUMENT, talus_body_set_mass(&world, box, NULL));
+    /* forces whose sum no float holds */
+    OK(talus_body_apply_torque(&world, box, kit_vec(0.0f, 3e38f, 0.0f)));
+    REFUSED(&world, TALUS_NOT_FINITE, talus_body_apply_torque(&world, box, kit_vec(0.0f, 3e38f, 0.0f)));
+    OK(talus_body_apply_torque(&world, box, kit_vec(0.0f, -3e38f, 0.0f)));
     /* further out than the square of a distance may be */
     talus_pose far = kit_pose(0.0f, 0.0f, -2.0f * TALUS_MAX_COORDINATE);
     talus_body_def far_def = talus_body_def_default();
