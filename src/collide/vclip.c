@@ -374,8 +374,8 @@ static int unpack(const tl_polytope *p, uint32_t word, feature *f) {
     }
 }
 
-/* Vertices near to the closest points, by a few rounds of Gilbert, An Iterative Procedure for Computing the Minimum of a
- * Quadratic Form on a Convex Set, 1966: d is a point of the difference B - A, drawn towards the origin. */
+/* Vertices near to the closest points, by a few rounds of Gilbert, An Iterative Procedure for Computing the Minimum of
+ * a Quadratic Form on a Convex Set, 1966: d is a point of the difference B - A, drawn towards the origin. */
 static void start(walk *w) {
     tl_d3 d = tl_d_sub(tl_frame_point(w->frame, w->body[1]->center), w->body[0]->center);
     uint32_t ia = 0u, ib = 0u;
