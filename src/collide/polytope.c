@@ -109,6 +109,19 @@ void tl_polytope_init(tl_polytope *p, const tl_convex *shape) {
     }
 }
 
+int tl_polytope_has(const tl_polytope *p, uint32_t feature) {
+    switch (p->round ? 0u : TL_FEATURE_KIND(feature)) {
+    case TL_FEATURE_VERTEX:
+        return TL_FEATURE_INDEX(feature) < p->vertex_count;
+    case TL_FEATURE_EDGE:
+        return TL_FEATURE_INDEX(feature) < p->edge_count;
+    case TL_FEATURE_FACE:
+        return TL_FEATURE_INDEX(feature) < p->face_count;
+    default:
+        return 0;
+    }
+}
+
 tl_frame tl_frame_of(const talus_pose *pose) {
     double x = (double)pose->rotation.x, y = (double)pose->rotation.y, z = (double)pose->rotation.z,
            w = (double)pose->rotation.w;

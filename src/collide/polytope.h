@@ -9,6 +9,14 @@
 
 #define TL_NO_FEATURE 0xffffu /* the edge of a ball's vertex, the face of a capsule's edge */
 
+/* A feature in one word, as pairs are remembered. */
+#define TL_FEATURE_VERTEX 1u
+#define TL_FEATURE_EDGE 2u
+#define TL_FEATURE_FACE 3u
+#define TL_FEATURE(kind, index) ((kind) << 16 | (index))
+#define TL_FEATURE_KIND(word) ((word) >> 16)
+#define TL_FEATURE_INDEX(word) ((word)&0xffffu)
+
 typedef struct tl_polytope {
     const tl_convex *shape;
     int round; /* a cylinder, a cut cone, a capsule of two radii: nothing but the shape and the size is set */
@@ -27,6 +35,9 @@ typedef struct tl_polytope {
 
 /* *out points to the shape and into itself: not to be copied. */
 void tl_polytope_init(tl_polytope *out, const tl_convex *shape);
+
+/* Whether the polytope has that feature. */
+int tl_polytope_has(const tl_polytope *p, uint32_t feature);
 
 /* p_outer = x * p.x + y * p.y + z * p.z + t */
 typedef struct tl_frame {

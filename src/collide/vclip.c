@@ -20,10 +20,6 @@
 #define START_GAIN 0.01
 #define NOTHING 1e-14 /* of the sizes: a distance that is all rounding */
 
-#define KIND_VERTEX 1u
-#define KIND_EDGE 2u
-#define KIND_FACE 3u
-
 typedef struct feature {
     uint32_t kind, index;
 } feature;
@@ -101,7 +97,7 @@ static tl_d3 clip_point(const clip *c, double x) { return tl_d_add(c->tail, tl_d
 /* How the distance to body `side`'s feature f changes along the segment at x: a number of the same sign. */
 static double slope(const clip *c, const walk *w, int side, feature f, double x) {
     tl_d3 p = clip_point(c, x);
-    if (f.kind == KIND_VERTEX) {
+    if (f.kind == TL_FEATURE_VERTEX) {
         return tl_d_dot(c->u, tl_d_sub(p, vertex(w, side, f.index)));
     }
     tl_d3 n = tl_polytope_normal(w->body[side], f.index);
@@ -128,7 +124,7 @@ static feature leave_vertex(const walk *w, int side, tl_d3 p) {
     do {
         uint32_t twin = tl_hull_twin(e);
         if (tl_d_dot(d, tl_d_sub(vertex(w, side, b->edges[twin].origin), v)) > 0.0) {
-            return make(KIND_EDGE, e);
+            return make(TL_FEATURE_EDGE, e);
         }
         e = b->edges[twin].next;
     } while (e != first);
@@ -153,15 +149,15 @@ static int vertex_edge(walk *w, int side) {
     tl_d3 tail = vertex(w, !side, t), head = vertex(w, !side, h), u = tl_d_sub(head, tail);
     tl_d3 from_tail = tl_d_sub(p, tail);
     if (tl_d_dot(from_tail, u) < 0.0) {
-        return go(w, !side, make(KIND_VERTEX, t));
+        return go(w, !side, make(TL_FEATURE_VERTEX, t));
     }
     if (tl_d_dot(tl_d_sub(p, head), u) > 0.0) {
-        return go(w, !side, make(KIND_VERTEX, h));
+        return go(w, !side, make(TL_FEATURE_VERTEX, h));
     }
     for (uint32_t k = 0; k < 2u && other->face_count > 0u; ++k) {
         uint32_t half = e ^ k;
         if (tl_d_dot(tl_d_sub(p, k ? head : tail), side_plane(w, !side, half)) < 0.0) {
-            return go(w, !side, make(KIND_FACE, other->edges[half].face));
+            return go(w, !side, make(TL_FEATURE_FACE, other->edges[half].face));
         }
     }
     uint32_t first = b->vertex_edge[i], k = first;
@@ -174,7 +170,7 @@ static int vertex_edge(walk *w, int side) {
     do {
         uint32_t twin = tl_hull_twin(k);
         tl_d3 along = tl_d_sub(v, vertex(w, side, b->edges[twin].origin));
-        clip_by(&c, tl_d_dot(along, at_tail), tl_d_dot(along, at_head), make(KIND_EDGE, k));
+        clip_by(&c, tl_d_dot(along, at_tail), tl_d_dot(along, at_head), make(TL_FEATURE_EDGE, k));
         if (c.out.kind) {
             return go(w, side, c.out);
         }
@@ -211,9 +207,11 @@ static int edge_edge(walk *w) {
         tl_d3 tail = vertex(w, side, t), head = vertex(w, side, h), u = tl_d_sub(head, tail);
         clip c;
         clip_begin(&c, w, !side, w->at[!side].index);
-        clip_by(&c, tl_d_dot(tl_d_sub(c.tail, tail), u), tl_d_dot(tl_d_sub(c.head, tail), u), make(KIND_VERTEX, t));
+        clip_by(&c, tl_d_dot(tl_d_sub(c.tail, tail), u), tl_d_dot(tl_d_sub(c.head, tail), u),
+                make(TL_FEATURE_VERTEX, t));
         if (!c.out.kind) {
-            clip_by(&c, tl_d_dot(tl_d_sub(head, c.tail), u), tl_d_dot(tl_d_sub(head, c.head), u), make(KIND_VERTEX, h));
+            clip_by(&c, tl_d_dot(tl_d_sub(head, c.tail), u), tl_d_dot(tl_d_sub(head, c.head), u),
+                    make(TL_FEATURE_VERTEX, h));
         }
         feature to = leave_edge(&c, w, side);
         if (to.kind) {
@@ -222,7 +220,7 @@ static int edge_edge(walk *w) {
         for (uint32_t k = 0; k < 2u && b->face_count > 0u && !c.out.kind; ++k) {
             tl_d3 m = side_plane(w, side, e ^ k), on = k ? head : tail;
             clip_by(&c, tl_d_dot(tl_d_sub(c.tail, on), m), tl_d_dot(tl_d_sub(c.head, on), m),
-                    make(KIND_FACE, b->edges[e ^ k].face));
+                    make(TL_FEATURE_FACE, b->edges[e ^ k].face));
         }
         to = leave_edge(&c, w, side);
         if (to.kind) {
@@ -255,11 +253,11 @@ static int edge_face(walk *w, int side) {
     clip_begin(&c, w, side, e);
     do {
         tl_d3 m = side_plane(w, !side, k), on = vertex(w, !side, tail_of(w, !side, k));
-        clip_by(&c, -tl_d_dot(tl_d_sub(c.tail, on), m), -tl_d_dot(tl_d_sub(c.head, on), m), make(KIND_EDGE, k));
+        clip_by(&c, -tl_d_dot(tl_d_sub(c.tail, on), m), -tl_d_dot(tl_d_sub(c.head, on), m), make(TL_FEATURE_EDGE, k));
         k = b->edges[k].next;
     } while (k != first && !c.out.kind);
     if (c.out.kind || c.low > c.high) {
-        return go(w, !side, make(KIND_EDGE, nearest_side(w, !side, face, c.tail, c.head)));
+        return go(w, !side, make(TL_FEATURE_EDGE, nearest_side(w, !side, face, c.tail, c.head)));
     }
     tl_d3 n = tl_polytope_normal(b, face), on = vertex(w, !side, tail_of(w, !side, first));
     double low = tl_d_dot(n, tl_d_sub(clip_point(&c, c.low), on));
@@ -270,9 +268,9 @@ static int edge_face(walk *w, int side) {
     }
     double rise = low > 0.0 ? tl_d_dot(n, c.u) : -tl_d_dot(n, c.u);
     if (rise >= 0.0) {
-        return c.below.kind ? go(w, !side, c.below) : go(w, side, make(KIND_VERTEX, tail_of(w, side, e)));
+        return c.below.kind ? go(w, !side, c.below) : go(w, side, make(TL_FEATURE_VERTEX, tail_of(w, side, e)));
     }
-    return c.above.kind ? go(w, !side, c.above) : go(w, side, make(KIND_VERTEX, head_of(w, side, e)));
+    return c.above.kind ? go(w, !side, c.above) : go(w, side, make(TL_FEATURE_VERTEX, head_of(w, side, e)));
 }
 
 /* How far p is outside of a face in the polar dual about the body's centre: 1 on its plane. */
@@ -315,7 +313,7 @@ static int vertex_face(walk *w, int side) {
         k = b->edges[k].next;
     } while (k != first && !outside);
     if (outside) {
-        return go(w, !side, make(KIND_EDGE, nearest_side(w, !side, face, p, p)));
+        return go(w, !side, make(TL_FEATURE_EDGE, nearest_side(w, !side, face, p, p)));
     }
     tl_d3 n = tl_polytope_normal(b, face);
     double height = tl_d_dot(n, tl_d_sub(p, vertex(w, !side, tail_of(w, !side, first))));
@@ -330,7 +328,7 @@ static int vertex_face(walk *w, int side) {
         do {
             uint32_t twin = tl_hull_twin(e);
             if (tl_d_dot(m, tl_d_sub(vertex(w, side, own->edges[twin].origin), v)) < 0.0) {
-                return go(w, side, make(KIND_EDGE, e));
+                return go(w, side, make(TL_FEATURE_EDGE, e));
             }
             e = own->edges[twin].next;
         } while (e != first);
@@ -342,37 +340,23 @@ static int vertex_face(walk *w, int side) {
     if (height <= 1.0 || seen == face) {
         return meet(w, !side, p);
     }
-    return go(w, !side, make(KIND_FACE, seen));
+    return go(w, !side, make(TL_FEATURE_FACE, seen));
 }
 
 static int step(walk *w) {
     uint32_t a = w->at[0].kind, b = w->at[1].kind;
-    if (a == KIND_FACE || b == KIND_FACE) {
-        int side = a == KIND_FACE; /* of what is no face */
-        return w->at[side].kind == KIND_VERTEX ? vertex_face(w, side) : edge_face(w, side);
+    if (a == TL_FEATURE_FACE || b == TL_FEATURE_FACE) {
+        int side = a == TL_FEATURE_FACE; /* of what is no face */
+        return w->at[side].kind == TL_FEATURE_VERTEX ? vertex_face(w, side) : edge_face(w, side);
     }
-    if (a == KIND_EDGE && b == KIND_EDGE) {
+    if (a == TL_FEATURE_EDGE && b == TL_FEATURE_EDGE) {
         return edge_edge(w);
     }
-    return a == b ? vertex_vertex(w) : vertex_edge(w, a == KIND_EDGE);
+    return a == b ? vertex_vertex(w) : vertex_edge(w, a == TL_FEATURE_EDGE);
 }
 
-static uint32_t pack(feature f) { return f.kind << 16 | f.index; }
-
-static int unpack(const tl_polytope *p, uint32_t word, feature *f) {
-    f->kind = word >> 16;
-    f->index = word & 0xffffu;
-    switch (f->kind) {
-    case KIND_VERTEX:
-        return f->index < p->vertex_count;
-    case KIND_EDGE:
-        return f->index < p->edge_count;
-    case KIND_FACE:
-        return f->index < p->face_count;
-    default:
-        return 0;
-    }
-}
+static uint32_t pack(feature f) { return TL_FEATURE(f.kind, f.index); }
+static feature unpack(uint32_t word) { return make(TL_FEATURE_KIND(word), TL_FEATURE_INDEX(word)); }
 
 /* Vertices near to the closest points, by a few rounds of Gilbert, An Iterative Procedure for Computing the Minimum of
  * a Quadratic Form on a Convex Set, 1966: d is a point of the difference B - A, drawn towards the origin. */
@@ -389,15 +373,15 @@ static void start(walk *w) {
         }
         d = gain >= length ? to : tl_d_add(d, tl_d_scale(along, gain / length));
     }
-    w->at[0] = make(KIND_VERTEX, ia);
-    w->at[1] = make(KIND_VERTEX, ib);
+    w->at[0] = make(TL_FEATURE_VERTEX, ia);
+    w->at[1] = make(TL_FEATURE_VERTEX, ib);
 }
 
 /* The corners of a feature in body 0's frame: one or two of them. */
 static void ends(const walk *w, int side, tl_d3 *p, tl_d3 *q) {
     feature f = w->at[side];
-    *p = vertex(w, side, f.kind == KIND_EDGE ? tail_of(w, side, f.index) : f.index);
-    *q = f.kind == KIND_EDGE ? vertex(w, side, head_of(w, side, f.index)) : *p;
+    *p = vertex(w, side, f.kind == TL_FEATURE_EDGE ? tail_of(w, side, f.index) : f.index);
+    *q = f.kind == TL_FEATURE_EDGE ? vertex(w, side, head_of(w, side, f.index)) : *p;
     if (side) {
         *p = tl_frame_point(w->frame, *p);
         *q = tl_frame_point(w->frame, *q);
@@ -406,8 +390,8 @@ static void ends(const walk *w, int side, tl_d3 *p, tl_d3 *q) {
 
 /* Distance, normal and points of the cores from the features that hold them. */
 static void measure(const walk *w, tl_closest *out) {
-    int face = w->at[1].kind == KIND_FACE; /* the body of the face, if there is one */
-    if (w->at[face].kind == KIND_FACE) {
+    int face = w->at[1].kind == TL_FEATURE_FACE; /* the body of the face, if there is one */
+    if (w->at[face].kind == TL_FEATURE_FACE) {
         const tl_polytope *b = w->body[face];
         uint32_t f = w->at[face].index;
         tl_d3 p = across(w, face, vertex(w, !face, w->at[!face].index)), n = tl_polytope_normal(b, f);
@@ -469,8 +453,8 @@ static void by_gjk(const tl_polytope *a, const tl_polytope *b, const tl_frame *f
     out->normal = out->cores_apart ? tl_d_from(near.normal) : tl_d(0.0, 0.0, 0.0);
     out->features.a = out->features.b = 0u;
     if (!a->round && !b->round) {
-        out->features.a = pack(make(KIND_VERTEX, simplex.vertex[0].ia));
-        out->features.b = pack(make(KIND_VERTEX, simplex.vertex[0].ib));
+        out->features.a = pack(make(TL_FEATURE_VERTEX, simplex.vertex[0].ia));
+        out->features.b = pack(make(TL_FEATURE_VERTEX, simplex.vertex[0].ib));
     }
     swell(out, ca.radius, cb.radius);
 }
@@ -488,8 +472,10 @@ void tl_closest_find(const tl_polytope *a, const tl_polytope *b, const tl_frame 
     w.body[1] = b;
     w.frame = b_in_a;
     w.meet = 0;
-    int known_a = unpack(a, features.a, &w.at[0]), known_b = unpack(b, features.b, &w.at[1]);
-    if (!known_a || !known_b || (w.at[0].kind == KIND_FACE && w.at[1].kind == KIND_FACE)) {
+    w.at[0] = unpack(features.a);
+    w.at[1] = unpack(features.b);
+    if (!tl_polytope_has(a, features.a) || !tl_polytope_has(b, features.b) ||
+        (w.at[0].kind == TL_FEATURE_FACE && w.at[1].kind == TL_FEATURE_FACE)) {
         start(&w);
     }
     while (step(&w) == STEP) {
