@@ -80,7 +80,6 @@ static void report(const search *s, talus_time_status status, double time, talus
     out->normal = tl_d_round(s->normal);
     out->point_a = tl_d_round(tl_frame_point(&s->frame, s->near.point_a));
     out->point_b = tl_d_round(tl_frame_point(&s->frame, s->near.point_b));
-    out->features = s->near.features;
     out->queries = s->queries;
 }
 
@@ -140,11 +139,11 @@ static void by_bisection(search *s, talus_contact_time *out) {
 }
 
 void tl_advance(const tl_moving *a, const tl_moving *b, float tolerance, talus_time_method method,
-                talus_feature_pair features, talus_contact_time *out) {
+                talus_feature_pair *features, talus_contact_time *out) {
     search s;
     s.a = a, s.b = b;
     s.queries = 0u;
-    s.near.features = features;
+    s.near.features = *features;
     double size = (double)a->core.size + (double)a->core.radius + (double)b->core.size + (double)b->core.radius;
     s.tolerance = tl_d_max((double)tolerance, NOISE * size);
     query(&s, 0.0);
@@ -155,4 +154,5 @@ void tl_advance(const tl_moving *a, const tl_moving *b, float tolerance, talus_t
     } else {
         by_advancement(&s, out);
     }
+    *features = s.near.features;
 }

@@ -24,6 +24,6 @@ tl_frame tl_moving_frame(const tl_moving *m, double time);
 /* The first time at which the gap is at most `tolerance`, or 4e-6 of the sizes if that is more: out in the common
  * frame. */
 void tl_advance(const tl_moving *a, const tl_moving *b, float tolerance, talus_time_method method,
-                talus_feature_pair features, talus_contact_time *out);
+                talus_feature_pair *features, talus_contact_time *out);
 
 #endif

@@ -147,7 +147,7 @@ static int corner(const tl_polytope *p, uint32_t feature, uint32_t turn, uint32_
     uint32_t i = TL_FEATURE_INDEX(feature);
     switch (TL_FEATURE_KIND(feature)) {
     case TL_FEATURE_EDGE:
-        *vertex = p->edges[i ^ turn].origin;
+        *vertex = p->edges[i ^ (turn & 1u)].origin;
         return turn < 2u;
     case TL_FEATURE_FACE:
         *at = turn == 0u ? p->face_edge[i] : p->edges[*at].next;

@@ -419,31 +419,39 @@ static void measure(const walk *w, tl_closest *out) {
     }
 }
 
+/* From the cores to the surfaces. */
 static void swell(tl_closest *out, float ra, float rb) {
     out->apart = 0;
     if (out->cores_apart) {
+        /* between the cores, within reach of both radii */
+        double low = tl_d_max(out->gap - (double)rb, 0.0), high = tl_d_min(out->gap, (double)ra);
+        out->common = tl_d_add(out->point_a, tl_d_scale(out->normal, 0.5 * (low + high)));
         out->gap -= (double)ra + (double)rb;
         out->apart = out->gap > 0.0;
         out->point_a = tl_d_add(out->point_a, tl_d_scale(out->normal, (double)ra));
         out->point_b = tl_d_sub(out->point_b, tl_d_scale(out->normal, (double)rb));
     } else {
         out->gap = 0.0;
-        out->point_b = out->point_a;
+        out->common = out->point_b = out->point_a;
         out->normal = tl_d(0.0, 0.0, 0.0);
     }
 }
 
-static void by_gjk(const tl_polytope *a, const tl_polytope *b, const tl_frame *frame, tl_closest *out) {
+void tl_closest_cores(const tl_polytope *a, const tl_polytope *b, const tl_frame *frame, tl_core *ca, tl_core *cb) {
     talus_pose identity = tl_pose_identity();
+    tl_core_init(ca, a->shape, NULL);
+    tl_core_init(cb, b->shape, &identity);
+    cb->r.x = tl_d_round(frame->x);
+    cb->r.y = tl_d_round(frame->y);
+    cb->r.z = tl_d_round(frame->z);
+    cb->t = tl_d_round(frame->t);
+}
+
+static void by_gjk(const tl_polytope *a, const tl_polytope *b, const tl_frame *frame, tl_closest *out) {
     tl_core ca, cb;
     tl_simplex simplex;
     tl_gjk near;
-    tl_core_init(&ca, a->shape, NULL);
-    tl_core_init(&cb, b->shape, &identity);
-    cb.r.x = tl_d_round(frame->x);
-    cb.r.y = tl_d_round(frame->y);
-    cb.r.z = tl_d_round(frame->z);
-    cb.t = tl_d_round(frame->t);
+    tl_closest_cores(a, b, frame, &ca, &cb);
     simplex.count = 0;
     talus_vec3 guess = tl_normalize_or(cb.t, tl_v(0.0f, 1.0f, 0.0f));
     out->cores_apart = tl_gjk_run(&ca, &cb, guess, 3e38f, &simplex, &near) == TL_GJK_APART;

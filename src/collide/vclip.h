@@ -3,6 +3,7 @@
 #define TL_VCLIP_H
 
 #include "collide/polytope.h"
+#include "collide/support.h"
 #include "talus/query.h"
 
 typedef struct tl_closest {
@@ -11,6 +12,7 @@ typedef struct tl_closest {
     double gap;             /* m between the surfaces; negative in overlap as far as the radii reach, 0 if cores meet */
     tl_d3 normal;           /* unit, from A to B, in A's frame */
     tl_d3 point_a, point_b; /* on the surfaces, in A's frame */
+    tl_d3 common;           /* in overlap: within both */
     talus_feature_pair features; /* where the search ended: a hint for the next */
     uint32_t steps;              /* from feature to feature */
     uint32_t gave_up;            /* 1: they did not end within bounds, and GJK answered */
@@ -21,5 +23,9 @@ typedef struct tl_closest {
  * there is a bound of 256 steps, after which GJK answers. GJK answers for round cores too; that leaves no features. */
 void tl_closest_find(const tl_polytope *a, const tl_polytope *b, const tl_frame *b_in_a, talus_feature_pair features,
                      tl_closest *out);
+
+/* The shapes as GJK and EPA take them, in A's frame. */
+void tl_closest_cores(const tl_polytope *a, const tl_polytope *b, const tl_frame *b_in_a, tl_core *core_a,
+                      tl_core *core_b);
 
 #endif

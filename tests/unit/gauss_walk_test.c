@@ -106,11 +106,10 @@ static void against_all(int most, int count) {
         expected = -expected - (double)a.radius - (double)b.radius;
         warm_least += expected <= 0.0 || warm.value <= expected * 1.00001 + 2e-6 * p.size;
     }
-    printf(
-        "  up to %d vertices: %d overlaps; local least in %.1f%% from cold, in %.1f%% a degree after the least, at most "
-        "%.3g times it; proven ones off by %.2g of the sizes; %.1f and %.0f directions looked along\n",
-        most, overlaps, 100.0 * least / overlaps, 100.0 * warm_least / overlaps, over, worst,
-        (double)local_looks / overlaps, (double)proof_looks / overlaps);
+    printf("  up to %d vertices: %d overlaps; local least in %.1f%% from cold (at most %.3g times it), in %.1f%% a\n"
+           "  degree after the least; proven ones off by %.2g of the sizes; %.1f and %.0f directions looked along\n",
+           most, overlaps, 100.0 * least / overlaps, over, 100.0 * warm_least / overlaps, worst,
+           (double)local_looks / overlaps, (double)proof_looks / overlaps);
     assert_true(overlaps * 4 > count);
     assert_true(warm_least * 100 > overlaps * 90);
 }
