@@ -24,7 +24,8 @@ static talus_motion draw_motion(double size, float far, float spin) {
     m.center = tl_scale(brute_vector(-0.3f, 0.3f), (float)size);
     talus_vec3 aim = tl_scale(brute_vector(-0.3f, 0.3f), (float)size);
     m.translation = tl_scale(tl_sub(aim, m.pose.position), brute_range(0.2f, 2.5f));
-    m.rotation = tl_scale(brute_direction(), brute_range(0.0f, spin));
+    m.rotation = brute_direction();
+    m.rotation = tl_scale(m.rotation, brute_range(0.0f, spin));
     return m;
 }
 

@@ -48,7 +48,8 @@ static void against_all(int most, int count) {
     build_pool(most);
     for (int i = 0; i < count; ++i) {
         static tl_polytope a, b;
-        kit_pair p = {&pool[brute_u32() % POOL], &pool[brute_u32() % POOL], brute_pose(0.0f, 0.9f), 0.0, 0};
+        const tl_convex *sa = &pool[brute_u32() % POOL], *sb = &pool[brute_u32() % POOL];
+        kit_pair p = {sa, sb, brute_pose(0.0f, 0.9f), 0.0, 0};
         double expected;
         d3 at;
         uint64_t seed = brute_state;

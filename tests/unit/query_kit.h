@@ -122,7 +122,8 @@ static inline kit_pair kit_draw(void) {
         n = kit_face(&a);
         p.pose.rotation = kit_turn(kit_face(&b), tl_neg(n));
         if (p.family == KIT_COPLANAR) {
-            talus_vec3 v = tl_scale(brute_vector(-1.0f, 1.0f), kit_power(-7.0f, -2.0f));
+            float angle = kit_power(-7.0f, -2.0f);
+            talus_vec3 v = tl_scale(brute_vector(-1.0f, 1.0f), angle);
             talus_quat tilt = {v.x, v.y, v.z, 1.0f};
             p.pose.rotation = tl_quat_normalize(tl_quat_mul(tilt, p.pose.rotation));
         }

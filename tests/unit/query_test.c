@@ -250,7 +250,8 @@ static void round_motions(void **state) {
         talus_motion ma = {brute_pose(5.0f, 30.0f), {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
         talus_motion mb = {brute_pose(0.0f, 2.0f), {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
         ma.translation = tl_scale(ma.pose.position, -2.0f);
-        ma.rotation = tl_scale(brute_direction(), brute_range(0.0f, 3.14f));
+        ma.rotation = brute_direction();
+        ma.rotation = tl_scale(ma.rotation, brute_range(0.0f, 3.14f));
         talus_contact_time t;
         talus_separation s;
         assert_int_equal(talus_time_of_contact(&ca, &ma, &cb, &mb, 1e-4f, TALUS_ADVANCEMENT, NULL, &t), TALUS_OK);

@@ -135,8 +135,10 @@ static void hints(void **state) {
         kit_pair p = kit_draw();
         talus_feature_pair hint = {0, 0}, noise;
         tl_closest warm, cold;
-        noise.a = (brute_u32() % 5u) << 16 | (brute_u32() & 0x1ffu);
-        noise.b = (brute_u32() % 5u) << 16 | (brute_u32() & 0x1ffu);
+        uint32_t bits = brute_u32();
+        noise.a = (bits & 0xffu) % 5u << 16 | (bits >> 8 & 0x1ffu);
+        bits = brute_u32();
+        noise.b = (bits & 0xffu) % 5u << 16 | (bits >> 8 & 0x1ffu);
         find(&p, hint, &cold);
         find(&p, noise, &warm);
         /* an overlap no deeper than the floor may be seen or not */
