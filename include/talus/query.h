@@ -39,7 +39,7 @@ typedef struct talus_separation {
     talus_vec3 normal; /* unit, from A to B; 0 if the shapes, without the radii of balls and capsules, overlap */
     talus_vec3 point_a, point_b; /* next to one another on the surfaces; in overlap one and the same, within both */
     uint32_t steps;              /* from feature to feature */
-    uint32_t gave_up;            /* 1: the walk did not end within 256 steps, and a search from nothing answered */
+    uint32_t gave_up; /* 1: the walk did not end within 256 steps, or not where it should: a search answered */
 } talus_separation;
 
 /* The queries answer TALUS_BAD_ARGUMENT for null pointers (but `features` may be null), numbers out of range, a

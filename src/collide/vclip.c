@@ -15,6 +15,9 @@
 #include "collide/gjk.h"
 
 #define MAX_STEPS 256u
+/* What an answer may be wrong by, in parts of itself and of the sizes, before GJK is asked. */
+#define GAP_SLACK 1e-6
+#define SIZE_SLACK 5e-7
 /* More rounds cost more than the steps they save. */
 #define START_ROUNDS 5
 #define START_GAIN 0.01
@@ -396,7 +399,13 @@ static void measure(const walk *w, tl_closest *out) {
         uint32_t f = w->at[face].index;
         tl_d3 p = across(w, face, vertex(w, !face, w->at[!face].index)), n = tl_polytope_normal(b, f);
         n = tl_d_scale(n, 1.0 / tl_d_length(n));
-        out->gap = tl_d_dot(n, tl_d_sub(p, vertex(w, face, tail_of(w, face, b->face_edge[f]))));
+        /* from the corner that stands out furthest: faces are flat to about 1e-6 of their hull */
+        uint32_t first = b->face_edge[f], e = first;
+        out->gap = 1e300;
+        do {
+            out->gap = tl_d_min(out->gap, tl_d_dot(n, tl_d_sub(p, vertex(w, face, tail_of(w, face, e)))));
+            e = b->edges[e].next;
+        } while (e != first);
         tl_d3 foot = tl_d_sub(p, tl_d_scale(n, out->gap));
         out->normal = face ? tl_d_scale(tl_frame_turn(w->frame, n), -1.0) : n;
         out->point_a = face ? tl_frame_point(w->frame, p) : foot;
@@ -417,6 +426,21 @@ static void measure(const walk *w, tl_closest *out) {
     if (out->cores_apart) {
         out->normal = tl_d_scale(d, 1.0 / out->gap);
     }
+}
+
+/* Whether the bodies are as far apart along the normal as the features are: always so in exact arithmetic, and of a
+ * face that has been seen to. */
+static int is_proven(const walk *w, const tl_closest *c) {
+    if (!c->cores_apart || w->at[0].kind == TL_FEATURE_FACE || w->at[1].kind == TL_FEATURE_FACE) {
+        return 1;
+    }
+    const tl_polytope *a = w->body[0], *b = w->body[1];
+    uint32_t ia = w->at[0].kind == TL_FEATURE_EDGE ? tail_of(w, 0, w->at[0].index) : w->at[0].index;
+    uint32_t ib = w->at[1].kind == TL_FEATURE_EDGE ? tail_of(w, 1, w->at[1].index) : w->at[1].index;
+    ia = tl_polytope_support(a, c->normal, ia, 1);
+    ib = tl_polytope_support(b, tl_frame_turn_back(w->frame, tl_d_scale(c->normal, -1.0)), ib, 1);
+    tl_d3 d = tl_d_sub(tl_frame_point(w->frame, vertex(w, 1, ib)), vertex(w, 0, ia));
+    return c->gap - tl_d_dot(c->normal, d) <= GAP_SLACK * c->gap + SIZE_SLACK * ((double)a->size + (double)b->size);
 }
 
 /* From the cores to the surfaces. */
@@ -500,6 +524,11 @@ void tl_closest_find(const tl_polytope *a, const tl_polytope *b, const tl_frame 
         out->point_a = w.common;
     } else {
         measure(&w, out);
+        if (!is_proven(&w, out)) {
+            out->gave_up = 1u;
+            by_gjk(a, b, b_in_a, out);
+            return;
+        }
     }
     swell(out, a->radius, b->radius);
 }

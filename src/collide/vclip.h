@@ -15,7 +15,7 @@ typedef struct tl_closest {
     tl_d3 common;           /* in overlap: within both */
     talus_feature_pair features; /* where the search ended: a hint for the next */
     uint32_t steps;              /* from feature to feature */
-    uint32_t gave_up;            /* 1: they did not end within bounds, and GJK answered */
+    uint32_t gave_up;            /* 1: they did not end, or not where they should, and GJK answered */
 } tl_closest;
 
 /* b's frame is seen from a. `features` may be any bits. In exact arithmetic each step goes to features that are nearer,

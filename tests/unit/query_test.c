@@ -271,9 +271,63 @@ static void round_motions(void **state) {
     assert_true(hits > 50 && misses > 50);
 }
 
+static int is_finite_all(const float *x, int count) {
+    int finite = 1;
+    for (int i = 0; i < count; ++i) {
+        finite = finite && isfinite(x[i]);
+    }
+    return finite;
+}
+
+/* The smallest and largest sizes and places that are allowed, and hints of noise: finite answers of sound signs. */
+static void extremes(void **state) {
+    (void)state;
+    for (int i = 0; i < 4000; ++i) {
+        talus_convex c[2];
+        talus_pose pose[2];
+        for (int k = 0; k < 2; ++k) {
+            int kind = (int)(brute_u32() % BRUTE_HULL);
+            tl_convex s = brute_shape(kind, 0.3f, 1.0f);
+            talus_geometry *g = &s.geometry;
+            float low = brute_u32() & 1u ? -5.0f : 3.0f;
+            float x = kit_power(low, low + 2.0f), y = kit_power(low, low + 2.0f), z = kit_power(low, low + 2.0f);
+            g->radius *= x, g->half_height *= y, g->radius_top *= x, g->radius_bottom *= x;
+            g->half = tl_mul(g->half, tl_v(x, y, z));
+            c[k] = convex_of(&s);
+            pose[k] = brute_pose(0.0f, 1.0f);
+            pose[k].position = tl_scale(pose[k].position, brute_u32() & 1u ? x : kit_power(-9.0f, 8.7f));
+            pose[k].rotation.w *= 1e-3f;
+        }
+        talus_feature_pair hint;
+        hint.a = brute_u32();
+        hint.b = brute_u32();
+        talus_separation s;
+        talus_depth d;
+        talus_contact_time t;
+        assert_int_equal(talus_distance(&c[0], &pose[0], &c[1], &pose[1], &hint, &s), TALUS_OK);
+        hint.a ^= brute_u32() & 0x3000fu;
+        assert_int_equal(talus_penetration(&c[0], &pose[0], &c[1], &pose[1], TALUS_DEPTH_LOCAL, &hint, &d), TALUS_OK);
+        assert_true(s.distance >= 0.0f && d.depth >= 0.0f && (s.distance > 0.0f) == !s.overlap);
+        assert_true(is_finite_all(&s.distance, 1) && is_finite_all(&s.normal.x, 9));
+        assert_true(is_finite_all(&d.depth, 1) && is_finite_all(&d.normal.x, 9));
+        talus_motion m[2];
+        for (int k = 0; k < 2; ++k) {
+            m[k].pose = pose[k];
+            m[k].center = tl_v(0.0f, 0.0f, 0.0f);
+            m[k].translation = tl_sub(pose[!k].position, pose[k].position);
+            m[k].rotation = tl_scale(brute_direction(), 3.1415925f);
+        }
+        assert_int_equal(talus_time_of_contact(&c[0], &m[0], &c[1], &m[1], 1e-6f, TALUS_ADVANCEMENT, &hint, &t),
+                         TALUS_OK);
+        assert_true(t.time >= 0.0 && t.time <= 1.0 && is_finite_all(&t.gap, 1) && is_finite_all(&t.normal.x, 9));
+        assert_true(t.status == TALUS_TIME_TOUCHING || t.gap > 0.0f || t.status == TALUS_TIME_UNFINISHED);
+    }
+}
+
 int main(void) {
     brute_seed("query_test");
     const struct CMUnitTest tests[] = {cmocka_unit_test(refusals), cmocka_unit_test(all_kinds),
-                                       cmocka_unit_test(closed_forms), cmocka_unit_test(round_motions)};
+                                       cmocka_unit_test(closed_forms), cmocka_unit_test(round_motions),
+                                       cmocka_unit_test(extremes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
