@@ -9,6 +9,7 @@
 #include "talus/joint.h"
 #include "talus/loop.h"
 #include "talus/profile.h"
+#include "talus/query.h"
 #include "talus/record.h"
 #include "talus/rollback.h"
 #include "talus/shape.h"

@@ -1,0 +1,231 @@
+/* Penetration depth by descent over the overlaid Gauss maps of A and of -B: Kim, Lin & Manocha, DEEP: Dual-space
+ * Expansion for Estimating Penetration Depth Between Convex Polytopes, ICRA 2002; the same, Incremental Penetration
+ * Depth Estimation Between Convex Polytopes Using Dual-Space Expansion, IEEE TVCG 10(2), 2004. A cell of the overlay is
+ * the directions in which one vertex of A and one of B support; along an arc within it the depth is concave, so that
+ * the minima are at its corners: normals of A's faces, of B's, and crossings of an edge's arc of A with one of B.
+ *
+ * A corner only offers its direction: what counts is the depth along it, which is an upper bound of the penetration
+ * whatever rounding does, and the descent is strict. Metres, in A's frame. */
+#include "collide/gauss_walk.h"
+
+#define PARALLEL 1e-18 /* squared sine below which two edges have no normal */
+
+void tl_gauss_look(tl_gauss_pair *pair, tl_d3 n, uint32_t ia, uint32_t ib, tl_gauss_depth *out) {
+    const tl_polytope *a = pair->a, *b = pair->b;
+    out->n = n;
+    out->ia = tl_polytope_support(a, n, ia, 1);
+    out->ib = tl_polytope_support(b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), ib, 1);
+    out->p = tl_d_sub(tl_polytope_vertex(a, out->ia), tl_frame_point(pair->frame, tl_polytope_vertex(b, out->ib)));
+    out->value = tl_d_dot(n, out->p);
+    out->feature_a = TL_FEATURE(TL_FEATURE_VERTEX, out->ia);
+    out->feature_b = TL_FEATURE(TL_FEATURE_VERTEX, out->ib);
+    ++pair->supports;
+}
+
+/* The depth below which another is better: a gain worth a step, or the features of a direction that has none yet. */
+static double worth(const tl_gauss_depth *best) {
+    int corner = TL_FEATURE_KIND(best->feature_a) + TL_FEATURE_KIND(best->feature_b) > 2u * TL_FEATURE_VERTEX;
+    return best->value * (corner ? 1.0 - 1e-12 : 1.0 + 1e-12);
+}
+
+/* Takes a direction (of any length) for the best if the depth along it is less. */
+static int try_direction(tl_gauss_pair *pair, tl_d3 n, uint32_t ia, uint32_t ib, uint32_t feature_a, uint32_t feature_b,
+                         tl_gauss_depth *best) {
+    tl_gauss_depth d;
+    tl_gauss_look(pair, tl_d_scale(n, 1.0 / tl_d_length(n)), ia, ib, &d);
+    if (!(d.value < worth(best))) {
+        return 0;
+    }
+    d.feature_a = feature_a;
+    d.feature_b = feature_b;
+    *best = d;
+    return 1;
+}
+
+/* Whether the height of p over the plane across n undercuts the best, without a root. */
+static int may_be_less(tl_d3 n, tl_d3 p, double limit) {
+    double h = tl_d_dot(n, p);
+    return h <= 0.0 || h * h < limit * limit * tl_d_dot(n, n);
+}
+
+/* The faces around a vertex of one side, against the other side's vertex. */
+static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
+    const tl_polytope *s = side ? pair->b : pair->a;
+    uint32_t first = s->vertex_edge[side ? ib : ia], e = first;
+    int better = 0;
+    if (s->face_count == 0u) {
+        return 0;
+    }
+    do {
+        uint32_t face = s->edges[e].face;
+        tl_d3 n = tl_polytope_normal(s, face);
+        n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
+        if (may_be_less(n, p, worth(best))) {
+            better |= try_direction(pair, n, ia, ib,
+                                    side ? TL_FEATURE(TL_FEATURE_VERTEX, ia) : TL_FEATURE(TL_FEATURE_FACE, face),
+                                    side ? TL_FEATURE(TL_FEATURE_FACE, face) : TL_FEATURE(TL_FEATURE_VERTEX, ib), best);
+        }
+        e = s->edges[tl_hull_twin(e)].next;
+    } while (e != first);
+    return better;
+}
+
+/* An edge of A as B's frame sees it: its direction and the normals on its left and right. */
+typedef struct seen_edge {
+    tl_d3 u, left, right;
+    int has_faces;
+} seen_edge;
+
+/* The normal of an edge of A and half-edge f of B if their arcs cross, pointing from A to B. */
+static int crossing(const seen_edge *e, const tl_polytope *b, uint32_t f, tl_d3 *n) {
+    tl_d3 v = tl_d_sub(tl_polytope_vertex(b, b->edges[f ^ 1u].origin), tl_polytope_vertex(b, b->edges[f].origin));
+    double left = 0.0, right = 0.0, near_left = 0.0, near_right = 0.0;
+    tl_d3 outward = e->has_faces ? tl_d_add(e->left, e->right) : tl_d(0.0, 0.0, 0.0);
+    if (e->has_faces) {
+        near_left = tl_d_dot(e->left, v), near_right = tl_d_dot(e->right, v);
+        if (near_left * near_right > 0.0) {
+            return 0;
+        }
+    }
+    if (b->face_count > 0u) {
+        tl_d3 m_left = tl_polytope_normal(b, b->edges[f].face), m_right = tl_polytope_normal(b, b->edges[f ^ 1u].face);
+        left = tl_d_dot(m_left, e->u), right = tl_d_dot(m_right, e->u);
+        /* the arcs' planes cross in two opposite places; one of them must be on both */
+        if (left * right > 0.0 || left * near_right > 0.0 || right * near_left > 0.0) {
+            return 0;
+        }
+        outward = e->has_faces ? outward : tl_d_scale(tl_d_add(m_left, m_right), -1.0);
+    }
+    *n = tl_d_cross(e->u, v);
+    if (!(tl_d_dot(*n, *n) > PARALLEL * tl_d_dot(e->u, e->u) * tl_d_dot(v, v))) {
+        return 0;
+    }
+    if (tl_d_dot(*n, outward) < 0.0) {
+        *n = tl_d_scale(*n, -1.0);
+    }
+    return 1;
+}
+
+/* The crossings of the edges around a vertex of A with those around one of B. */
+static int try_edges(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
+    const tl_polytope *a = pair->a, *b = pair->b;
+    uint32_t first_a = a->vertex_edge[ia], first_b = b->vertex_edge[ib], e = first_a;
+    tl_d3 at_a = tl_polytope_vertex(a, ia), n, seen = tl_frame_turn_back(pair->frame, p);
+    int better = 0;
+    if (first_a == TL_NO_FEATURE || first_b == TL_NO_FEATURE) {
+        return 0;
+    }
+    do {
+        uint32_t twin = tl_hull_twin(e), f = first_b;
+        seen_edge s = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, a->face_count > 0u};
+        s.u = tl_frame_turn_back(pair->frame, tl_d_sub(tl_polytope_vertex(a, a->edges[twin].origin), at_a));
+        if (s.has_faces) {
+            s.left = tl_frame_turn_back(pair->frame, tl_polytope_normal(a, a->edges[e].face));
+            s.right = tl_frame_turn_back(pair->frame, tl_polytope_normal(a, a->edges[twin].face));
+        }
+        do {
+            if (crossing(&s, b, f, &n) && may_be_less(n, seen, worth(best))) {
+                better |= try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, e),
+                                        TL_FEATURE(TL_FEATURE_EDGE, f), best);
+            }
+            f = b->edges[tl_hull_twin(f)].next;
+        } while (f != first_b);
+        e = a->edges[twin].next;
+    } while (e != first_a);
+    return better;
+}
+
+static int try_cell(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_gauss_depth *best) {
+    tl_d3 p = tl_d_sub(tl_polytope_vertex(pair->a, ia), tl_frame_point(pair->frame, tl_polytope_vertex(pair->b, ib)));
+    int better = try_faces(pair, 0, ia, ib, p, best);
+    better |= try_faces(pair, 1, ia, ib, p, best);
+    return better | try_edges(pair, ia, ib, p, best);
+}
+
+/* The corners of a feature one after the other: the first, and after *at the next, 0 at the end. */
+static int corner(const tl_polytope *p, uint32_t feature, uint32_t turn, uint32_t *at, uint32_t *vertex) {
+    uint32_t i = TL_FEATURE_INDEX(feature);
+    switch (TL_FEATURE_KIND(feature)) {
+    case TL_FEATURE_EDGE:
+        *vertex = p->edges[i ^ (turn & 1u)].origin;
+        return turn < 2u;
+    case TL_FEATURE_FACE:
+        *at = turn == 0u ? p->face_edge[i] : p->edges[*at].next;
+        *vertex = p->edges[*at].origin;
+        return turn == 0u || *at != p->face_edge[i];
+    default:
+        *vertex = i;
+        return turn == 0u;
+    }
+}
+
+void tl_gauss_descend(tl_gauss_pair *pair, tl_gauss_depth *best) {
+    int better = 1;
+    while (better && best->value > 0.0) {
+        /* the cells that meet in this corner of the overlay; as soon as one has a deeper place, those around that */
+        uint32_t fa = best->feature_a, fb = best->feature_b, at_a = 0u, at_b = 0u, ia, ib;
+        better = 0;
+        for (uint32_t i = 0; !better && corner(pair->a, fa, i, &at_a, &ia); ++i) {
+            for (uint32_t k = 0; !better && corner(pair->b, fb, k, &at_b, &ib); ++k) {
+                better = try_cell(pair, ia, ib, best);
+            }
+        }
+    }
+}
+
+void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_depth *out) {
+    const tl_polytope *a = pair->a, *b = pair->b;
+    tl_d3 n = tl_d_sub(tl_frame_point(pair->frame, b->center), a->center), u, v;
+    uint32_t ia = 0u, ib = 0u, fa = features.a, fb = features.b, at = 0u;
+    int known = tl_polytope_has(a, fa) && tl_polytope_has(b, fb);
+    if (known) {
+        (void)corner(a, fa, 0u, &at, &ia);
+        (void)corner(b, fb, 0u, &at, &ib);
+        if (TL_FEATURE_KIND(fa) == TL_FEATURE_FACE) {
+            n = tl_polytope_normal(a, TL_FEATURE_INDEX(fa));
+        } else if (TL_FEATURE_KIND(fb) == TL_FEATURE_FACE) {
+            n = tl_d_scale(tl_frame_turn(pair->frame, tl_polytope_normal(b, TL_FEATURE_INDEX(fb))), -1.0);
+        } else if (TL_FEATURE_KIND(fa) == TL_FEATURE_EDGE && TL_FEATURE_KIND(fb) == TL_FEATURE_EDGE) {
+            uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
+            u = tl_d_sub(tl_polytope_vertex(a, a->edges[e ^ 1u].origin), tl_polytope_vertex(a, ia));
+            v = tl_d_sub(tl_polytope_vertex(b, b->edges[f ^ 1u].origin), tl_polytope_vertex(b, ib));
+            tl_d3 across = tl_d_cross(u, tl_frame_turn(pair->frame, v)), outward = n;
+            if (a->face_count > 0u) {
+                outward =
+                    tl_d_add(tl_polytope_normal(a, a->edges[e].face), tl_polytope_normal(a, a->edges[e ^ 1u].face));
+            } else if (b->face_count > 0u) {
+                outward =
+                    tl_d_add(tl_polytope_normal(b, b->edges[f].face), tl_polytope_normal(b, b->edges[f ^ 1u].face));
+                outward = tl_d_scale(tl_frame_turn(pair->frame, outward), -1.0);
+            }
+            n = tl_d_scale(across, tl_d_dot(across, outward) < 0.0 ? -1.0 : 1.0);
+        }
+    }
+    double length = tl_d_length(n);
+    n = length > 1e-30 ? tl_d_scale(n, 1.0 / length) : tl_d(0.0, 1.0, 0.0);
+    if (!known) {
+        ia = tl_polytope_support(a, n, 0u, 0);
+        ib = tl_polytope_support(b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), 0u, 0);
+    }
+    tl_gauss_look(pair, n, ia, ib, out);
+}
+
+void tl_gauss_points(const tl_gauss_pair *pair, const tl_gauss_depth *d, tl_d3 *point_a, tl_d3 *point_b) {
+    const tl_polytope *a = pair->a, *b = pair->b;
+    *point_a = tl_polytope_vertex(a, d->ia);
+    *point_b = tl_frame_point(pair->frame, tl_polytope_vertex(b, d->ib));
+    if (TL_FEATURE_KIND(d->feature_a) == TL_FEATURE_FACE) {
+        *point_a = tl_d_add(*point_b, tl_d_scale(d->n, d->value));
+    } else if (TL_FEATURE_KIND(d->feature_b) == TL_FEATURE_FACE) {
+        *point_b = tl_d_sub(*point_a, tl_d_scale(d->n, d->value));
+    } else if (TL_FEATURE_KIND(d->feature_a) == TL_FEATURE_EDGE) {
+        uint32_t e = TL_FEATURE_INDEX(d->feature_a), f = TL_FEATURE_INDEX(d->feature_b);
+        tl_d3 p0 = tl_polytope_vertex(a, a->edges[e].origin), p1 = tl_polytope_vertex(a, a->edges[e ^ 1u].origin);
+        tl_d3 q0 = tl_frame_point(pair->frame, tl_polytope_vertex(b, b->edges[f].origin));
+        tl_d3 q1 = tl_frame_point(pair->frame, tl_polytope_vertex(b, b->edges[f ^ 1u].origin));
+        double s, t;
+        (void)tl_segments(p0, p1, q0, q1, &s, &t);
+        *point_a = tl_d_add(p0, tl_d_scale(tl_d_sub(p1, p0), s));
+        *point_b = tl_d_add(q0, tl_d_scale(tl_d_sub(q1, q0), t));
+    }
+}

@@ -1,0 +1,77 @@
+/* Boxes, hulls, capsules of one radius and balls as one thing to the queries that walk over features: half-edges
+ * swollen by a radius. A ball is one vertex without edges, a capsule one edge without faces. Also the frame of one
+ * shape seen from another, in double. Metres. */
+#ifndef TL_POLYTOPE_H
+#define TL_POLYTOPE_H
+
+#include "collide/collide.h"
+#include "geom/double3.h"
+
+#define TL_NO_FEATURE 0xffffu /* the edge of a ball's vertex, the face of a capsule's edge */
+
+/* A feature in one word, as pairs are remembered. */
+#define TL_FEATURE_VERTEX 1u
+#define TL_FEATURE_EDGE 2u
+#define TL_FEATURE_FACE 3u
+#define TL_FEATURE(kind, index) ((kind) << 16 | (index))
+#define TL_FEATURE_KIND(word) ((word) >> 16)
+#define TL_FEATURE_INDEX(word) ((word)&0xffffu)
+
+typedef struct tl_polytope {
+    const tl_convex *shape;
+    int round; /* a cylinder, a cut cone, a capsule of two radii: nothing but the shape and the size is set */
+    const float *x, *y, *z;      /* of vertices */
+    const float *nx, *ny, *nz;   /* outward unit normals of faces: n.p = d */
+    const float *d;              /* m */
+    const uint16_t *vertex_edge; /* a half-edge that leaves each vertex */
+    const uint16_t *face_edge;   /* a half-edge of each face */
+    const tl_half_edge *edges;
+    uint32_t vertex_count, edge_count, face_count; /* half-edges are counted */
+    float radius;                                  /* by which it is swollen */
+    float size;                                    /* no point of the core is further than this from `center` */
+    tl_d3 center;                                  /* strictly inside, where there is an inside */
+    float own[48];                                 /* coordinates of what is no hull */
+} tl_polytope;
+
+/* *out points to the shape and into itself: not to be copied. */
+void tl_polytope_init(tl_polytope *out, const tl_convex *shape);
+
+/* Whether the polytope has that feature. */
+int tl_polytope_has(const tl_polytope *p, uint32_t feature);
+
+/* p_outer = x * p.x + y * p.y + z * p.z + t */
+typedef struct tl_frame {
+    tl_d3 x, y, z, t;
+} tl_frame;
+
+/* Of a pose whose rotation need not be of unit length, only not 0. */
+tl_frame tl_frame_of(const talus_pose *pose);
+/* b seen from a, both seen from one frame. */
+tl_frame tl_frame_between(const tl_frame *a, const tl_frame *b);
+
+static inline tl_d3 tl_frame_turn(const tl_frame *f, tl_d3 v) {
+    return tl_d(f->x.x * v.x + f->y.x * v.y + f->z.x * v.z, f->x.y * v.x + f->y.y * v.y + f->z.y * v.z,
+                f->x.z * v.x + f->y.z * v.y + f->z.z * v.z);
+}
+static inline tl_d3 tl_frame_turn_back(const tl_frame *f, tl_d3 v) {
+    return tl_d(tl_d_dot(f->x, v), tl_d_dot(f->y, v), tl_d_dot(f->z, v));
+}
+static inline tl_d3 tl_frame_point(const tl_frame *f, tl_d3 p) { return tl_d_add(tl_frame_turn(f, p), f->t); }
+static inline tl_d3 tl_frame_point_back(const tl_frame *f, tl_d3 p) { return tl_frame_turn_back(f, tl_d_sub(p, f->t)); }
+
+static inline tl_d3 tl_polytope_vertex(const tl_polytope *p, uint32_t i) {
+    return tl_d((double)p->x[i], (double)p->y[i], (double)p->z[i]);
+}
+static inline tl_d3 tl_polytope_normal(const tl_polytope *p, uint32_t face) {
+    return tl_d((double)p->nx[face], (double)p->ny[face], (double)p->nz[face]);
+}
+
+/* The vertex furthest along a direction of the polytope's frame; near_it != 0: by climbing from `start`, else from the
+ * best of a few spread over the hull (jump and walk: Muecke, Saias & Zhu 1996). */
+uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t start, int near_it);
+
+/* The points of two segments that are next to one another, as parts s and t in [0, 1] of them; of parallel ones the
+ * middle of the stretch where they run side by side. Their squared distance. */
+double tl_segments(tl_d3 p0, tl_d3 p1, tl_d3 q0, tl_d3 q1, double *s, double *t);
+
+#endif

@@ -1,0 +1,534 @@
+/* Closest features of two convex polyhedra by walking from feature to neighbour: Mirtich, V-Clip: Fast and Robust
+ * Polyhedral Collision Detection, ACM Transactions on Graphics 17(3), 1998, section 3. Two features hold the closest
+ * points if each one's point lies in the other's Voronoi region; where an edge is asked, it is clipped by the region
+ * and the distance to the region's feature looked at where it enters and leaves. No plane of a region is computed in
+ * two ways, so that what is outside for one feature is inside for its neighbour.
+ *
+ * A vertex inside of a region of a face but behind it, with all its edges leading further behind, is in the body or
+ * beyond another face: the polar dual tells (a walk over faces to the one through which the vertex is seen from the
+ * centre). A cold start begins with two vertices found by jumps and climbs (after Ehmann & Lin, Accurate and Fast
+ * Proximity Queries Between Polyhedra Using Convex Surface Decomposition, 2001, who look directions up).
+ *
+ * Each shape's regions are evaluated in its own frame; metres. */
+#include "collide/vclip.h"
+
+#include "collide/gjk.h"
+
+#define MAX_STEPS 256u
+/* What an answer may be wrong by, in parts of itself and of the sizes, before GJK is asked. */
+#define GAP_SLACK 1e-6
+#define SIZE_SLACK 5e-7
+/* More rounds cost more than the steps they save. */
+#define START_ROUNDS 5
+#define START_GAIN 0.01
+#define NOTHING 1e-14 /* of the sizes: a distance that is all rounding */
+
+typedef struct feature {
+    uint32_t kind, index;
+} feature;
+
+typedef struct walk {
+    const tl_polytope *body[2];
+    const tl_frame *frame; /* of body 1 in that of body 0 */
+    feature at[2];
+    int meet;     /* the bodies are found to overlap */
+    tl_d3 common; /* then: a common point, in body 0's frame */
+} walk;
+
+/* The part of a segment from tail to head that is left inside of a region, and the neighbours behind the planes that
+ * cut it: `out` is set if one plane alone has it all outside. */
+typedef struct clip {
+    tl_d3 tail, head, u;
+    double low, high;
+    feature below, above; /* kind 0: not cut there */
+    feature out;
+} clip;
+
+enum { STEP, DONE };
+
+static tl_d3 across(const walk *w, int to, tl_d3 p) {
+    return to ? tl_frame_point_back(w->frame, p) : tl_frame_point(w->frame, p);
+}
+
+static tl_d3 vertex(const walk *w, int side, uint32_t i) { return tl_polytope_vertex(w->body[side], i); }
+static uint32_t tail_of(const walk *w, int side, uint32_t e) { return w->body[side]->edges[e].origin; }
+static uint32_t head_of(const walk *w, int side, uint32_t e) { return w->body[side]->edges[e ^ 1u].origin; }
+
+static feature make(uint32_t kind, uint32_t index) {
+    feature f = {kind, index};
+    return f;
+}
+
+static int go(walk *w, int side, feature to) {
+    w->at[side] = to;
+    return STEP;
+}
+
+static int meet(walk *w, int side, tl_d3 p) {
+    w->meet = 1;
+    w->common = side ? tl_frame_point(w->frame, p) : p;
+    return DONE;
+}
+
+static void clip_begin(clip *c, const walk *w, int side, uint32_t e) {
+    c->tail = across(w, !side, vertex(w, side, tail_of(w, side, e)));
+    c->head = across(w, !side, vertex(w, side, head_of(w, side, e)));
+    c->u = tl_d_sub(c->head, c->tail);
+    c->low = 0.0, c->high = 1.0;
+    c->below = c->above = c->out = make(0u, 0u);
+}
+
+/* Cuts off what has a negative value, given those of the ends. */
+static void clip_by(clip *c, double at_tail, double at_head, feature neighbour) {
+    if (at_tail < 0.0 && at_head < 0.0) {
+        c->out = neighbour;
+    } else if (at_tail < 0.0) {
+        double x = at_tail / (at_tail - at_head);
+        if (x > c->low) {
+            c->low = x, c->below = neighbour;
+        }
+    } else if (at_head < 0.0) {
+        double x = at_tail / (at_tail - at_head);
+        if (x < c->high) {
+            c->high = x, c->above = neighbour;
+        }
+    }
+}
+
+static tl_d3 clip_point(const clip *c, double x) { return tl_d_add(c->tail, tl_d_scale(c->u, x)); }
+
+/* How the distance to body `side`'s feature f changes along the segment at x: a number of the same sign. */
+static double slope(const clip *c, const walk *w, int side, feature f, double x) {
+    tl_d3 p = clip_point(c, x);
+    if (f.kind == TL_FEATURE_VERTEX) {
+        return tl_d_dot(c->u, tl_d_sub(p, vertex(w, side, f.index)));
+    }
+    tl_d3 n = tl_polytope_normal(w->body[side], f.index);
+    uint32_t on = tail_of(w, side, w->body[side]->face_edge[f.index]);
+    double height = tl_d_dot(n, tl_d_sub(p, vertex(w, side, on))), rise = tl_d_dot(n, c->u);
+    return height > 0.0 ? rise : height < 0.0 ? -rise : 0.0;
+}
+
+/* The outward normal, in the plane of its face, of a half-edge: the plane between the regions of both. */
+static tl_d3 side_plane(const walk *w, int side, uint32_t e) {
+    const tl_polytope *p = w->body[side];
+    tl_d3 u = tl_d_sub(vertex(w, side, head_of(w, side, e)), vertex(w, side, tail_of(w, side, e)));
+    return tl_d_cross(u, tl_polytope_normal(p, p->edges[e].face));
+}
+
+/* The neighbour of vertex feature of `side` behind whose plane p (in its frame) lies; kind 0 if p is in the region. */
+static feature leave_vertex(const walk *w, int side, tl_d3 p) {
+    const tl_polytope *b = w->body[side];
+    uint32_t i = w->at[side].index, first = b->vertex_edge[i], e = first;
+    if (first == TL_NO_FEATURE) {
+        return make(0u, 0u);
+    }
+    tl_d3 v = vertex(w, side, i), d = tl_d_sub(p, v);
+    do {
+        uint32_t twin = tl_hull_twin(e);
+        if (tl_d_dot(d, tl_d_sub(vertex(w, side, b->edges[twin].origin), v)) > 0.0) {
+            return make(TL_FEATURE_EDGE, e);
+        }
+        e = b->edges[twin].next;
+    } while (e != first);
+    return make(0u, 0u);
+}
+
+static int vertex_vertex(walk *w) {
+    for (int side = 0; side < 2; ++side) {
+        feature to = leave_vertex(w, side, across(w, side, vertex(w, !side, w->at[!side].index)));
+        if (to.kind) {
+            return go(w, side, to);
+        }
+    }
+    return DONE;
+}
+
+static int vertex_edge(walk *w, int side) {
+    const tl_polytope *b = w->body[side], *other = w->body[!side];
+    uint32_t e = w->at[!side].index, i = w->at[side].index;
+    tl_d3 p = across(w, !side, vertex(w, side, i));
+    uint32_t t = tail_of(w, !side, e), h = head_of(w, !side, e);
+    tl_d3 tail = vertex(w, !side, t), head = vertex(w, !side, h), u = tl_d_sub(head, tail);
+    tl_d3 from_tail = tl_d_sub(p, tail);
+    if (tl_d_dot(from_tail, u) < 0.0) {
+        return go(w, !side, make(TL_FEATURE_VERTEX, t));
+    }
+    if (tl_d_dot(tl_d_sub(p, head), u) > 0.0) {
+        return go(w, !side, make(TL_FEATURE_VERTEX, h));
+    }
+    for (uint32_t k = 0; k < 2u && other->face_count > 0u; ++k) {
+        uint32_t half = e ^ k;
+        if (tl_d_dot(tl_d_sub(p, k ? head : tail), side_plane(w, !side, half)) < 0.0) {
+            return go(w, !side, make(TL_FEATURE_FACE, other->edges[half].face));
+        }
+    }
+    uint32_t first = b->vertex_edge[i], k = first;
+    if (first == TL_NO_FEATURE) {
+        return DONE;
+    }
+    clip c;
+    clip_begin(&c, w, !side, e);
+    tl_d3 v = vertex(w, side, i), at_tail = tl_d_sub(c.tail, v), at_head = tl_d_sub(c.head, v);
+    do {
+        uint32_t twin = tl_hull_twin(k);
+        tl_d3 along = tl_d_sub(v, vertex(w, side, b->edges[twin].origin));
+        clip_by(&c, tl_d_dot(along, at_tail), tl_d_dot(along, at_head), make(TL_FEATURE_EDGE, k));
+        if (c.out.kind) {
+            return go(w, side, c.out);
+        }
+        k = b->edges[twin].next;
+    } while (k != first);
+    /* on the plane between them the vertex is as near as its edge */
+    if (c.below.kind && slope(&c, w, side, w->at[side], c.low) > 0.0) {
+        return go(w, side, c.below);
+    }
+    if (c.above.kind && slope(&c, w, side, w->at[side], c.high) < 0.0) {
+        return go(w, side, c.above);
+    }
+    return DONE;
+}
+
+/* Whether the closest point of the other body's clipped edge lies beyond where it was cut. */
+static feature leave_edge(const clip *c, const walk *w, int side) {
+    if (c->out.kind) {
+        return c->out;
+    }
+    if (c->below.kind && slope(c, w, side, c->below, c->low) > 0.0) {
+        return c->below;
+    }
+    if (c->above.kind && slope(c, w, side, c->above, c->high) < 0.0) {
+        return c->above;
+    }
+    return make(0u, 0u);
+}
+
+static int edge_edge(walk *w) {
+    for (int side = 0; side < 2; ++side) {
+        const tl_polytope *b = w->body[side];
+        uint32_t e = w->at[side].index, t = tail_of(w, side, e), h = head_of(w, side, e);
+        tl_d3 tail = vertex(w, side, t), head = vertex(w, side, h), u = tl_d_sub(head, tail);
+        clip c;
+        clip_begin(&c, w, !side, w->at[!side].index);
+        clip_by(&c, tl_d_dot(tl_d_sub(c.tail, tail), u), tl_d_dot(tl_d_sub(c.head, tail), u),
+                make(TL_FEATURE_VERTEX, t));
+        if (!c.out.kind) {
+            clip_by(&c, tl_d_dot(tl_d_sub(head, c.tail), u), tl_d_dot(tl_d_sub(head, c.head), u),
+                    make(TL_FEATURE_VERTEX, h));
+        }
+        feature to = leave_edge(&c, w, side);
+        if (to.kind) {
+            return go(w, side, to);
+        }
+        for (uint32_t k = 0; k < 2u && b->face_count > 0u && !c.out.kind; ++k) {
+            tl_d3 m = side_plane(w, side, e ^ k), on = k ? head : tail;
+            clip_by(&c, tl_d_dot(tl_d_sub(c.tail, on), m), tl_d_dot(tl_d_sub(c.head, on), m),
+                    make(TL_FEATURE_FACE, b->edges[e ^ k].face));
+        }
+        to = leave_edge(&c, w, side);
+        if (to.kind) {
+            return go(w, side, to);
+        }
+    }
+    return DONE;
+}
+
+/* The edge of the face next to the segment. */
+static uint32_t nearest_side(const walk *w, int side, uint32_t face, tl_d3 p, tl_d3 q) {
+    const tl_polytope *b = w->body[side];
+    uint32_t first = b->face_edge[face], e = first, best = first;
+    double least = 1e300, s, t;
+    do {
+        double d2 =
+            tl_segments(vertex(w, side, tail_of(w, side, e)), vertex(w, side, head_of(w, side, e)), p, q, &s, &t);
+        if (d2 < least) {
+            least = d2, best = e;
+        }
+        e = b->edges[e].next;
+    } while (e != first);
+    return best;
+}
+
+static int edge_face(walk *w, int side) {
+    const tl_polytope *b = w->body[!side];
+    uint32_t face = w->at[!side].index, first = b->face_edge[face], k = first, e = w->at[side].index;
+    clip c;
+    clip_begin(&c, w, side, e);
+    do {
+        tl_d3 m = side_plane(w, !side, k), on = vertex(w, !side, tail_of(w, !side, k));
+        clip_by(&c, -tl_d_dot(tl_d_sub(c.tail, on), m), -tl_d_dot(tl_d_sub(c.head, on), m), make(TL_FEATURE_EDGE, k));
+        k = b->edges[k].next;
+    } while (k != first && !c.out.kind);
+    if (c.out.kind || c.low > c.high) {
+        return go(w, !side, make(TL_FEATURE_EDGE, nearest_side(w, !side, face, c.tail, c.head)));
+    }
+    tl_d3 n = tl_polytope_normal(b, face), on = vertex(w, !side, tail_of(w, !side, first));
+    double low = tl_d_dot(n, tl_d_sub(clip_point(&c, c.low), on));
+    double high = tl_d_dot(n, tl_d_sub(clip_point(&c, c.high), on));
+    if ((low <= 0.0 && high >= 0.0) || (low >= 0.0 && high <= 0.0)) {
+        double x = low != high ? low / (low - high) : 0.5;
+        return meet(w, !side, clip_point(&c, c.low + x * (c.high - c.low)));
+    }
+    double rise = low > 0.0 ? tl_d_dot(n, c.u) : -tl_d_dot(n, c.u);
+    if (rise >= 0.0) {
+        return c.below.kind ? go(w, !side, c.below) : go(w, side, make(TL_FEATURE_VERTEX, tail_of(w, side, e)));
+    }
+    return c.above.kind ? go(w, !side, c.above) : go(w, side, make(TL_FEATURE_VERTEX, head_of(w, side, e)));
+}
+
+/* How far p is outside of a face in the polar dual about the body's centre: 1 on its plane. */
+static double dual_height(const tl_polytope *b, uint32_t face, tl_d3 from_center) {
+    tl_d3 n = tl_polytope_normal(b, face);
+    return tl_d_dot(n, from_center) / ((double)b->d[face] - tl_d_dot(n, b->center));
+}
+
+/* The face through which p is seen from the centre: a linear function over the dual, so that climbing finds it. */
+static uint32_t face_towards(const tl_polytope *b, uint32_t face, tl_d3 p, double *height) {
+    tl_d3 d = tl_d_sub(p, b->center);
+    double best = dual_height(b, face, d);
+    for (uint32_t steps = 0; steps < b->face_count; ++steps) {
+        uint32_t first = b->face_edge[face], e = first, to = face;
+        do {
+            uint32_t f = b->edges[e ^ 1u].face;
+            double h = dual_height(b, f, d);
+            if (h > best) {
+                best = h, to = f;
+            }
+            e = b->edges[e].next;
+        } while (e != first);
+        if (to == face) {
+            break;
+        }
+        face = to;
+    }
+    *height = best;
+    return face;
+}
+
+static int vertex_face(walk *w, int side) {
+    const tl_polytope *b = w->body[!side], *own = w->body[side];
+    uint32_t face = w->at[!side].index, first = b->face_edge[face], k = first, i = w->at[side].index;
+    tl_d3 p = across(w, !side, vertex(w, side, i));
+    int outside = 0;
+    do {
+        tl_d3 on = vertex(w, !side, tail_of(w, !side, k));
+        outside = tl_d_dot(tl_d_sub(p, on), side_plane(w, !side, k)) > 0.0;
+        k = b->edges[k].next;
+    } while (k != first && !outside);
+    if (outside) {
+        return go(w, !side, make(TL_FEATURE_EDGE, nearest_side(w, !side, face, p, p)));
+    }
+    tl_d3 n = tl_polytope_normal(b, face);
+    double height = tl_d_dot(n, tl_d_sub(p, vertex(w, !side, tail_of(w, !side, first))));
+    if (height == 0.0) {
+        return meet(w, !side, p);
+    }
+    uint32_t e = own->vertex_edge[i];
+    if (e != TL_NO_FEATURE) {
+        tl_d3 m = side ? tl_frame_turn_back(w->frame, n) : tl_frame_turn(w->frame, n), v = vertex(w, side, i);
+        m = height > 0.0 ? m : tl_d_scale(m, -1.0);
+        first = e;
+        do {
+            uint32_t twin = tl_hull_twin(e);
+            if (tl_d_dot(m, tl_d_sub(vertex(w, side, own->edges[twin].origin), v)) < 0.0) {
+                return go(w, side, make(TL_FEATURE_EDGE, e));
+            }
+            e = own->edges[twin].next;
+        } while (e != first);
+    }
+    if (height > 0.0) {
+        return DONE;
+    }
+    uint32_t seen = face_towards(b, face, p, &height);
+    if (height <= 1.0 || seen == face) {
+        return meet(w, !side, p);
+    }
+    return go(w, !side, make(TL_FEATURE_FACE, seen));
+}
+
+static int step(walk *w) {
+    uint32_t a = w->at[0].kind, b = w->at[1].kind;
+    if (a == TL_FEATURE_FACE || b == TL_FEATURE_FACE) {
+        int side = a == TL_FEATURE_FACE; /* of what is no face */
+        return w->at[side].kind == TL_FEATURE_VERTEX ? vertex_face(w, side) : edge_face(w, side);
+    }
+    if (a == TL_FEATURE_EDGE && b == TL_FEATURE_EDGE) {
+        return edge_edge(w);
+    }
+    return a == b ? vertex_vertex(w) : vertex_edge(w, a == TL_FEATURE_EDGE);
+}
+
+static uint32_t pack(feature f) { return TL_FEATURE(f.kind, f.index); }
+static feature unpack(uint32_t word) { return make(TL_FEATURE_KIND(word), TL_FEATURE_INDEX(word)); }
+
+/* Vertices near to the closest points, by a few rounds of Gilbert, An Iterative Procedure for Computing the Minimum of
+ * a Quadratic Form on a Convex Set, 1966: d is a point of the difference B - A, drawn towards the origin. */
+static void start(walk *w) {
+    tl_d3 d = tl_d_sub(tl_frame_point(w->frame, w->body[1]->center), w->body[0]->center);
+    uint32_t ia = 0u, ib = 0u;
+    for (int round = 0; round < START_ROUNDS; ++round) {
+        ia = tl_polytope_support(w->body[0], d, ia, round > 0);
+        ib = tl_polytope_support(w->body[1], tl_frame_turn_back(w->frame, tl_d_scale(d, -1.0)), ib, round > 0);
+        tl_d3 to = tl_d_sub(tl_frame_point(w->frame, vertex(w, 1, ib)), vertex(w, 0, ia)), along = tl_d_sub(to, d);
+        double gain = -tl_d_dot(d, along), length = tl_d_dot(along, along);
+        if (gain <= START_GAIN * tl_d_dot(d, d)) {
+            break;
+        }
+        d = gain >= length ? to : tl_d_add(d, tl_d_scale(along, gain / length));
+    }
+    w->at[0] = make(TL_FEATURE_VERTEX, ia);
+    w->at[1] = make(TL_FEATURE_VERTEX, ib);
+}
+
+/* The corners of a feature in body 0's frame: one or two of them. */
+static void ends(const walk *w, int side, tl_d3 *p, tl_d3 *q) {
+    feature f = w->at[side];
+    *p = vertex(w, side, f.kind == TL_FEATURE_EDGE ? tail_of(w, side, f.index) : f.index);
+    *q = f.kind == TL_FEATURE_EDGE ? vertex(w, side, head_of(w, side, f.index)) : *p;
+    if (side) {
+        *p = tl_frame_point(w->frame, *p);
+        *q = tl_frame_point(w->frame, *q);
+    }
+}
+
+/* Distance, normal and points of the cores from the features that hold them. */
+static void measure(const walk *w, tl_closest *out) {
+    int face = w->at[1].kind == TL_FEATURE_FACE; /* the body of the face, if there is one */
+    if (w->at[face].kind == TL_FEATURE_FACE) {
+        const tl_polytope *b = w->body[face];
+        uint32_t f = w->at[face].index;
+        tl_d3 p = across(w, face, vertex(w, !face, w->at[!face].index)), n = tl_polytope_normal(b, f);
+        n = tl_d_scale(n, 1.0 / tl_d_length(n));
+        /* from the corner that stands out furthest: faces are flat to about 1e-6 of their hull */
+        uint32_t first = b->face_edge[f], e = first;
+        out->gap = 1e300;
+        do {
+            out->gap = tl_d_min(out->gap, tl_d_dot(n, tl_d_sub(p, vertex(w, face, tail_of(w, face, e)))));
+            e = b->edges[e].next;
+        } while (e != first);
+        tl_d3 foot = tl_d_sub(p, tl_d_scale(n, out->gap));
+        out->normal = face ? tl_d_scale(tl_frame_turn(w->frame, n), -1.0) : n;
+        out->point_a = face ? tl_frame_point(w->frame, p) : foot;
+        out->point_b = face ? tl_frame_point(w->frame, foot) : p;
+        out->cores_apart = 1;
+        return;
+    }
+    tl_d3 p0, p1, q0, q1;
+    double s, t;
+    ends(w, 0, &p0, &p1);
+    ends(w, 1, &q0, &q1);
+    out->gap = tl_d_sqrt(tl_segments(p0, p1, q0, q1, &s, &t));
+    out->point_a = tl_d_add(p0, tl_d_scale(tl_d_sub(p1, p0), s));
+    out->point_b = tl_d_add(q0, tl_d_scale(tl_d_sub(q1, q0), t));
+    tl_d3 reach = tl_d_sub(out->point_a, w->body[0]->center), d = tl_d_sub(out->point_b, out->point_a);
+    double size = (double)w->body[0]->size + (double)w->body[1]->size + tl_d_length(reach);
+    out->cores_apart = out->gap > NOTHING * size;
+    if (out->cores_apart) {
+        out->normal = tl_d_scale(d, 1.0 / out->gap);
+    }
+}
+
+/* Whether the bodies are as far apart along the normal as the features are: always so in exact arithmetic, and of a
+ * face that has been seen to. */
+static int is_proven(const walk *w, const tl_closest *c) {
+    if (!c->cores_apart || w->at[0].kind == TL_FEATURE_FACE || w->at[1].kind == TL_FEATURE_FACE) {
+        return 1;
+    }
+    const tl_polytope *a = w->body[0], *b = w->body[1];
+    uint32_t ia = w->at[0].kind == TL_FEATURE_EDGE ? tail_of(w, 0, w->at[0].index) : w->at[0].index;
+    uint32_t ib = w->at[1].kind == TL_FEATURE_EDGE ? tail_of(w, 1, w->at[1].index) : w->at[1].index;
+    ia = tl_polytope_support(a, c->normal, ia, 1);
+    ib = tl_polytope_support(b, tl_frame_turn_back(w->frame, tl_d_scale(c->normal, -1.0)), ib, 1);
+    tl_d3 d = tl_d_sub(tl_frame_point(w->frame, vertex(w, 1, ib)), vertex(w, 0, ia));
+    return c->gap - tl_d_dot(c->normal, d) <= GAP_SLACK * c->gap + SIZE_SLACK * ((double)a->size + (double)b->size);
+}
+
+/* From the cores to the surfaces. */
+static void swell(tl_closest *out, float ra, float rb) {
+    out->apart = 0;
+    if (out->cores_apart) {
+        /* between the cores, within reach of both radii */
+        double low = tl_d_max(out->gap - (double)rb, 0.0), high = tl_d_min(out->gap, (double)ra);
+        out->common = tl_d_add(out->point_a, tl_d_scale(out->normal, 0.5 * (low + high)));
+        out->gap -= (double)ra + (double)rb;
+        out->apart = out->gap > 0.0;
+        out->point_a = tl_d_add(out->point_a, tl_d_scale(out->normal, (double)ra));
+        out->point_b = tl_d_sub(out->point_b, tl_d_scale(out->normal, (double)rb));
+    } else {
+        out->gap = 0.0;
+        out->common = out->point_b = out->point_a;
+        out->normal = tl_d(0.0, 0.0, 0.0);
+    }
+}
+
+void tl_closest_cores(const tl_polytope *a, const tl_polytope *b, const tl_frame *frame, tl_core *ca, tl_core *cb) {
+    talus_pose identity = tl_pose_identity();
+    tl_core_init(ca, a->shape, NULL);
+    tl_core_init(cb, b->shape, &identity);
+    cb->r.x = tl_d_round(frame->x);
+    cb->r.y = tl_d_round(frame->y);
+    cb->r.z = tl_d_round(frame->z);
+    cb->t = tl_d_round(frame->t);
+}
+
+static void by_gjk(const tl_polytope *a, const tl_polytope *b, const tl_frame *frame, tl_closest *out) {
+    tl_core ca, cb;
+    tl_simplex simplex;
+    tl_gjk near;
+    tl_closest_cores(a, b, frame, &ca, &cb);
+    simplex.count = 0;
+    talus_vec3 guess = tl_normalize_or(cb.t, tl_v(0.0f, 1.0f, 0.0f));
+    out->cores_apart = tl_gjk_run(&ca, &cb, guess, 3e38f, &simplex, &near) == TL_GJK_APART;
+    out->gap = (double)near.distance;
+    out->point_a = tl_d_from(near.point_a);
+    out->point_b = tl_d_from(near.point_b);
+    out->normal = out->cores_apart ? tl_d_from(near.normal) : tl_d(0.0, 0.0, 0.0);
+    out->features.a = out->features.b = 0u;
+    if (!a->round && !b->round) {
+        out->features.a = pack(make(TL_FEATURE_VERTEX, simplex.vertex[0].ia));
+        out->features.b = pack(make(TL_FEATURE_VERTEX, simplex.vertex[0].ib));
+    }
+    swell(out, ca.radius, cb.radius);
+}
+
+void tl_closest_find(const tl_polytope *a, const tl_polytope *b, const tl_frame *b_in_a, talus_feature_pair features,
+                     tl_closest *out) {
+    out->steps = 0u;
+    out->gave_up = 0u;
+    if (a->round || b->round) {
+        by_gjk(a, b, b_in_a, out);
+        return;
+    }
+    walk w;
+    w.body[0] = a;
+    w.body[1] = b;
+    w.frame = b_in_a;
+    w.meet = 0;
+    w.at[0] = unpack(features.a);
+    w.at[1] = unpack(features.b);
+    if (!tl_polytope_has(a, features.a) || !tl_polytope_has(b, features.b) ||
+        (w.at[0].kind == TL_FEATURE_FACE && w.at[1].kind == TL_FEATURE_FACE)) {
+        start(&w);
+    }
+    while (step(&w) == STEP) {
+        if (++out->steps == MAX_STEPS) {
+            out->gave_up = 1u;
+            by_gjk(a, b, b_in_a, out);
+            return;
+        }
+    }
+    out->features.a = pack(w.at[0]);
+    out->features.b = pack(w.at[1]);
+    if (w.meet) {
+        out->cores_apart = 0;
+        out->point_a = w.common;
+    } else {
+        measure(&w, out);
+        if (!is_proven(&w, out)) {
+            out->gave_up = 1u;
+            by_gjk(a, b, b_in_a, out);
+            return;
+        }
+    }
+    swell(out, a->radius, b->radius);
+}
