@@ -161,6 +161,13 @@ static void update_contact(tl_step *step, uint32_t c) {
     }
 }
 
+/* Micrometres that a contact may move before its manifold is made anew: between half of the slack and the whole, by a
+ * hash of the contact, so that those of a pile which came to rest together do not all come due in the same step. */
+static uint32_t slack_of(uint32_t contact, const tl_contact_meta *meta, uint32_t slack) {
+    uint64_t part = contact * 0x9e3779b1u >> 24; /* of 512 */
+    return meta->flags & TL_CONTACT_SENSOR ? 0u : slack - (uint32_t)(slack * part >> 9);
+}
+
 static void update_contacts(tl_step *step) {
     tl_header *h = step->h;
     const uint32_t *motion = tl_body_motion(h);
@@ -170,7 +177,7 @@ static void update_contacts(tl_step *step) {
         uint32_t c = tl_awake_contact(h)[k];
         const tl_contact_meta *meta = &tl_contacts(h)[c];
         uint32_t moved = motion[meta->body_a] + motion[meta->body_b] - meta->motion;
-        if (moved <= (meta->flags & TL_CONTACT_SENSOR ? 0u : slack) && !(meta->flags & TL_CONTACT_FRESH)) {
+        if (moved <= slack_of(c, meta, slack) && !(meta->flags & TL_CONTACT_FRESH)) {
             h->counters.manifolds_kept++;
         } else {
             update_contact(step, c);
