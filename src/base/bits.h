@@ -19,6 +19,14 @@ static inline uint32_t tl_bit_lowest(uint64_t word) {
     return number[((word & (0u - word)) * 0x022fdd63cc95386du) >> 58];
 }
 
+static inline uint32_t tl_bit_count(uint64_t word) {
+    uint32_t n = 0;
+    for (; word; word &= word - 1u) {
+        n++;
+    }
+    return n;
+}
+
 /* The members below `bits`, ascending, into `out`; returns how many there are. */
 static inline uint32_t tl_bit_list(const uint64_t *set, uint32_t bits, uint32_t *out) {
     uint32_t count = 0;

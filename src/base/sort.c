@@ -1,6 +1,6 @@
 #include "base/sort.h"
 
-static void sink_long(uint64_t *a, uint32_t i, uint32_t n) {
+static void sink(uint64_t *a, uint32_t i, uint32_t n) {
     uint64_t key = a[i];
     for (uint32_t child = 2u * i + 1u; child < n; child = 2u * i + 1u) {
         child += child + 1u < n && a[child + 1u] > a[child];
@@ -13,37 +13,12 @@ static void sink_long(uint64_t *a, uint32_t i, uint32_t n) {
     a[i] = key;
 }
 
-void tl_sort_long_words(uint64_t *a, uint32_t n) {
-    for (uint32_t i = n / 2u; i-- > 0;) {
-        sink_long(a, i, n);
-    }
-    for (uint32_t end = n; end-- > 1u;) {
-        uint64_t top = a[0];
-        a[0] = a[end];
-        a[end] = top;
-        sink_long(a, 0, end);
-    }
-}
-
-static void sink(uint32_t *a, uint32_t i, uint32_t n) {
-    uint32_t key = a[i];
-    for (uint32_t child = 2u * i + 1u; child < n; child = 2u * i + 1u) {
-        child += child + 1u < n && a[child + 1u] > a[child];
-        if (a[child] <= key) {
-            break;
-        }
-        a[i] = a[child];
-        i = child;
-    }
-    a[i] = key;
-}
-
-void tl_sort_words(uint32_t *a, uint32_t n) {
+void tl_sort_keys(uint64_t *a, uint32_t n) {
     for (uint32_t i = n / 2u; i-- > 0;) {
         sink(a, i, n);
     }
     for (uint32_t end = n; end-- > 1u;) {
-        uint32_t top = a[0];
+        uint64_t top = a[0];
         a[0] = a[end];
         a[end] = top;
         sink(a, 0, end);
@@ -62,7 +37,7 @@ uint32_t tl_heap_offer(uint64_t *heap, uint32_t count, uint32_t room, uint64_t k
     }
     if (room > 0 && key < heap[0]) {
         heap[0] = key;
-        sink_long(heap, 0, room);
+        sink(heap, 0, room);
     }
     return count;
 }

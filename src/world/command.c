@@ -100,9 +100,9 @@ size_t talus_command_encode(const talus_command *command, void *out, size_t capa
         return 0;
     }
     unsigned char *p = out;
-    tl_put32(p, (uint32_t)command->kind | words << 8), p += 4;
+    tl_put_word(p, (uint32_t)command->kind | words << 8), p += 4;
     if (info->target != TARGET_WORLD) {
-        tl_put32(p, command->index), tl_put32(p + 4, command->generation), p += 8;
+        tl_put_word(p, command->index), tl_put_word(p + 4, command->generation), p += 8;
     }
     for (const field *f = info->fields; f->count; f++) {
         const unsigned char *from = (const unsigned char *)&command->as + f->offset;
@@ -115,9 +115,9 @@ size_t talus_command_encode(const talus_command *command, void *out, size_t capa
             } else if (f->width == 8u) {
                 memcpy(&x, from, 8u);
             }
-            tl_put32(p, (uint32_t)x), p += 4;
+            tl_put_word(p, (uint32_t)x), p += 4;
             if (f->width == 8u) {
-                tl_put32(p, (uint32_t)(x >> 32)), p += 4;
+                tl_put_word(p, (uint32_t)(x >> 32)), p += 4;
             }
         }
     }
@@ -126,7 +126,7 @@ size_t talus_command_encode(const talus_command *command, void *out, size_t capa
 
 /* The next member of a width out of one or two words; 0 if the number does not fit it. */
 static int take_member(unsigned char *to, uint32_t width, const unsigned char **p) {
-    uint32_t word = tl_get32(*p);
+    uint32_t word = tl_get_word(*p);
     *p += 4;
     if (width == 1u) {
         *to = (unsigned char)word;
@@ -136,7 +136,7 @@ static int take_member(unsigned char *to, uint32_t width, const unsigned char **
         memcpy(to, &word, 4u);
         return 1;
     }
-    uint64_t both = (uint64_t)tl_get32(*p) << 32 | word;
+    uint64_t both = (uint64_t)tl_get_word(*p) << 32 | word;
     *p += 4;
     memcpy(to, &both, 8u);
     return 1;
@@ -144,10 +144,10 @@ static int take_member(unsigned char *to, uint32_t width, const unsigned char **
 
 size_t talus_command_decode(talus_command *command, const void *bytes, size_t size) {
     const unsigned char *p = bytes;
-    if (!command || !p || size < 4u || (tl_get32(p) & 255u) >= TALUS_COMMAND_COUNT) {
+    if (!command || !p || size < 4u || (tl_get_word(p) & 255u) >= TALUS_COMMAND_COUNT) {
         return 0;
     }
-    uint32_t head = tl_get32(p);
+    uint32_t head = tl_get_word(p);
     const command_info *info = &COMMANDS[head & 255u];
     uint32_t words = words_of(info);
     if (head >> 8 != words || (size - 4u) / 4u < words) {
@@ -157,7 +157,7 @@ size_t talus_command_decode(talus_command *command, const void *bytes, size_t si
     command->kind = (talus_command_kind)(head & 255u);
     p += 4;
     if (info->target != TARGET_WORLD) {
-        command->index = tl_get32(p), command->generation = tl_get32(p + 4), p += 8;
+        command->index = tl_get_word(p), command->generation = tl_get_word(p + 4), p += 8;
     }
     for (const field *f = info->fields; f->count; f++) {
         unsigned char *to = (unsigned char *)&command->as + f->offset;

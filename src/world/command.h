@@ -2,6 +2,7 @@
 #ifndef TL_COMMAND_H
 #define TL_COMMAND_H
 
+#include "base/bytes.h"
 #include "talus/command.h"
 
 #define TL_COMMANDS(X)                                                                                                 \
@@ -37,14 +38,5 @@
 #define X(kind, name, target, fields) talus_status tl_run_##name(talus_world *world, uint32_t i, talus_command *c);
 TL_COMMANDS(X)
 #undef X
-
-/* Words of four bytes as they stand in a record: lowest byte first. */
-static inline void tl_put32(unsigned char *out, uint32_t x) {
-    out[0] = (unsigned char)x, out[1] = (unsigned char)(x >> 8);
-    out[2] = (unsigned char)(x >> 16), out[3] = (unsigned char)(x >> 24);
-}
-static inline uint32_t tl_get32(const unsigned char *in) {
-    return (uint32_t)in[0] | (uint32_t)in[1] << 8 | (uint32_t)in[2] << 16 | (uint32_t)in[3] << 24;
-}
 
 #endif

@@ -212,8 +212,7 @@ talus_status talus_delta_apply(const void *base, size_t base_bytes, const void *
         return TALUS_BAD_BLOB;
     }
     uint64_t base_sum = tl_pack_checksum(b, base_bytes);
-    if (tl_get_word(d + 4u * HEAD_BASE_SUM) != (uint32_t)base_sum ||
-        tl_get_word(d + 4u * (HEAD_BASE_SUM + 1u)) != (uint32_t)(base_sum >> 32)) {
+    if (tl_get_long_word(d + 4u * HEAD_BASE_SUM) != base_sum) {
         return TALUS_BAD_BLOB;
     }
     if (out_bytes < size) {
@@ -249,8 +248,7 @@ talus_status talus_delta_apply(const void *base, size_t base_bytes, const void *
         done += (size_t)n;
     }
     uint64_t sum = tl_pack_checksum(to, size);
-    if (!r.at || r.at != r.end || done != size || tl_get_word(d + 4u * HEAD_SUM) != (uint32_t)sum ||
-        tl_get_word(d + 4u * (HEAD_SUM + 1u)) != (uint32_t)(sum >> 32)) {
+    if (!r.at || r.at != r.end || done != size || tl_get_long_word(d + 4u * HEAD_SUM) != sum) {
         return TALUS_BAD_BLOB;
     }
     *written = size;

@@ -11,14 +11,14 @@
 static talus_vec3 place_of(const tl_header *h, uint32_t body, const float *p) {
     talus_vec3 own = tl_v(p[0], p[1], p[2]);
     talus_pose pose = tl_row_pose_of(&tl_body_pose(h)[body]);
-    return !tl_body_row(h)[body] && !tl_body_is_dynamic(h, body) ? own : tl_pose_point(&pose, own);
+    return tl_body_is_fixed(h, body) ? own : tl_pose_point(&pose, own);
 }
 
 static float deepest_point(const tl_header *h, uint32_t contact) {
     const tl_contact_meta *m = &tl_contacts(h)[contact];
     const tl_contact_head *head = &tl_heads(h)[contact];
     talus_vec3 n = tl_v(head->normal[0], head->normal[1], head->normal[2]);
-    if (tl_body_row(h)[m->body_a] || tl_body_is_dynamic(h, m->body_a)) {
+    if (!tl_body_is_fixed(h, m->body_a)) {
         n = tl_rotate(tl_row_quat(&tl_body_pose(h)[m->body_a]), n);
     }
     float depth = 0.0f;

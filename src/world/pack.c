@@ -1,10 +1,12 @@
 #include "world/pack.h"
 
+#include "base/bits.h"
+
 #define BLOCK 32u /* bytes */
 #define RUN 256u
 
 /* The word of a block that comes k-th: of members of eight bytes the low half comes first. */
-static size_t place_of(size_t k, size_t word) { return word == 8u && tl_low_byte_last() ? k ^ 1u : k; }
+static size_t place_of(size_t k, size_t word) { return word == 8u && tl_high_byte_first() ? k ^ 1u : k; }
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
@@ -57,7 +59,7 @@ static unsigned char *pack_block(unsigned char *p, const unsigned char *now, con
     if (earlier && bytes == BLOCK && counts_on(now, before, earlier)) {
         return p;
     }
-    if (!earlier && before && bytes == BLOCK && !tl_low_byte_last()) { /* the usual cases by whole copies */
+    if (!earlier && before && bytes == BLOCK && !tl_high_byte_first()) { /* the usual cases by whole copies */
         uint32_t mask = difference(now, before);
         if (mask == 0) {
             return p;
@@ -121,14 +123,6 @@ size_t tl_pack_bound(size_t count, size_t stride) {
     return bytes + bytes / BLOCK + bytes / RUN + 2u + 32u;
 }
 
-static uint32_t bits_of(uint32_t x) {
-    uint32_t n = 0;
-    for (; x; x &= x - 1u) {
-        n++;
-    }
-    return n;
-}
-
 static void put_mark(const tl_marks *marks, size_t row) {
     uint32_t *m = marks->first + row * marks->stride;
     *m = *m < marks->value ? marks->value : *m;
@@ -138,7 +132,7 @@ static void put_mark(const tl_marks *marks, size_t row) {
  * *other is not 0 if that changes the block. */
 static const unsigned char *unpack_block(const unsigned char *p, const unsigned char *end, unsigned char *to,
                                          rows_before rows, size_t bytes, size_t word, uint32_t mask, uint32_t *other) {
-    if (end - p < (ptrdiff_t)(4u * 8u) && end - p < (ptrdiff_t)(4u * bits_of(mask))) {
+    if (end - p < (ptrdiff_t)(4u * 8u) && end - p < (ptrdiff_t)(4u * tl_bit_count(mask))) {
         return NULL;
     }
     for (size_t k = 0; k < bytes / 4u; k++) {
@@ -196,7 +190,7 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
 static uint64_t long_word(const unsigned char *p) {
     uint64_t w;
     memcpy(&w, p, 8);
-    return tl_low_byte_last() ? (uint64_t)tl_get_word(p + 4) << 32 | tl_get_word(p) : w;
+    return tl_high_byte_first() ? tl_get_long_word(p) : w;
 }
 
 /* Sums of words of eight bytes and sums of those sums in four interleaved streams: Fletcher, "An arithmetic checksum

@@ -15,12 +15,12 @@ uint32_t tl_record_checksum(const unsigned char *bytes, size_t size) {
     size_t words = size / 4u, i = 0;
     for (; i + 4u <= words; i += 4u) {
         for (unsigned k = 0; k < 4u; k++) {
-            stream[k] = (stream[k] ^ tl_get32(bytes + 4u * (i + k))) * 0x100000001b3u;
+            stream[k] = (stream[k] ^ tl_get_word(bytes + 4u * (i + k))) * 0x100000001b3u;
             stream[k] ^= stream[k] >> 32;
         }
     }
     for (; i < words; i++) {
-        stream[i % 4u] = (stream[i % 4u] ^ tl_get32(bytes + 4u * i)) * 0x100000001b3u;
+        stream[i % 4u] = (stream[i % 4u] ^ tl_get_word(bytes + 4u * i)) * 0x100000001b3u;
         stream[i % 4u] ^= stream[i % 4u] >> 32;
     }
     uint64_t h = size;
@@ -35,7 +35,7 @@ uint32_t tl_record_checksum(const unsigned char *bytes, size_t size) {
 
 /* Turns words of a size around where this machine keeps the highest byte first. */
 static void copy_small(unsigned char *to, const unsigned char *from, size_t bytes, unsigned word) {
-    unsigned turn = tl_is_big_endian() ? word - 1u : 0u;
+    unsigned turn = tl_high_byte_first() ? word - 1u : 0u;
     for (size_t i = 0; i < bytes; i++) {
         to[i ^ turn] = from[i];
     }
@@ -45,7 +45,7 @@ void tl_record_put_hull(unsigned char *out, const talus_hull *hull) {
     const unsigned char *from = (const unsigned char *)hull;
     copy_small(out, from, hull->vertex_edge, 4);
     copy_small(out + hull->vertex_edge, from + hull->vertex_edge, hull->bytes - hull->vertex_edge, 2);
-    tl_put32(out + offsetof(talus_hull, checksum), 0); /* of this machine's words; the chunk has one of its own */
+    tl_put_word(out + offsetof(talus_hull, checksum), 0); /* of this machine's words; the chunk has one of its own */
 }
 
 int tl_record_get_hull(unsigned char *out, const unsigned char *in, size_t bytes) {
@@ -73,11 +73,11 @@ int tl_record_get_hull(unsigned char *out, const unsigned char *in, size_t bytes
 
 /* Fills in the head of a chunk whose payload of `bytes` bytes stands behind it; returns the bytes of both. */
 static size_t close_chunk(unsigned char *at, uint32_t kind, size_t bytes, uint32_t steps) {
-    tl_put32(at, kind);
-    tl_put32(at + 4, (uint32_t)bytes);
-    tl_put32(at + 8, steps);
-    tl_put32(at + 12, tl_record_checksum(at + TL_CHUNK_HEAD, bytes));
-    tl_put32(at + 16, tl_record_checksum(at, 16));
+    tl_put_word(at, kind);
+    tl_put_word(at + 4, (uint32_t)bytes);
+    tl_put_word(at + 8, steps);
+    tl_put_word(at + 12, tl_record_checksum(at + TL_CHUNK_HEAD, bytes));
+    tl_put_word(at + 16, tl_record_checksum(at, 16));
     return TL_CHUNK_HEAD + bytes;
 }
 
@@ -86,20 +86,14 @@ static size_t close_chunk(unsigned char *at, uint32_t kind, size_t bytes, uint32
 
 static size_t keyframe_most(const tl_header *h) { return TL_CHUNK_HEAD + TL_RECORD_HASHES + tl_snapshot_most(h) + 4u; }
 
-static void put_words(unsigned char *at, const uint32_t *words, uint32_t count) {
-    for (uint32_t i = 0; i < count; i++) {
-        tl_put32(at + 4u * i, words[i]);
-    }
-}
-
 static size_t write_keyframe(talus_recorder *r, const talus_world *world, unsigned char *at) {
     const tl_header *h = tl_header_of(world);
     size_t bytes = 0;
     unsigned char *p = at + TL_CHUNK_HEAD;
     uint32_t whole[TL_STATE_COUNT];
     tl_state_hashes(h, whole);
-    put_words(p, whole, TL_STATE_COUNT);
-    put_words(p + TL_RECORD_HASHES / 2u, r->hash, TL_STATE_COUNT);
+    tl_put_words(p, whole, TL_STATE_COUNT);
+    tl_put_words(p + TL_RECORD_HASHES / 2u, r->hash, TL_STATE_COUNT);
     talus_world_save(world, p + TL_RECORD_HASHES, tl_snapshot_most(h), &bytes);
     while (bytes % 4u) {
         p[TL_RECORD_HASHES + bytes++] = 0;
@@ -121,7 +115,7 @@ static size_t write_hulls(const talus_recorder *r, const talus_world *world, uns
         }
         const talus_hull *hull = (const talus_hull *)(const void *)(region + o);
         if (at) {
-            tl_put32(at + size + TL_CHUNK_HEAD, (uint32_t)o);
+            tl_put_word(at + size + TL_CHUNK_HEAD, (uint32_t)o);
             tl_record_put_hull(at + size + TL_CHUNK_HEAD + 4u, hull);
             close_chunk(at + size, TL_CHUNK_HULL, 4u + hull->bytes, r->steps);
         }
@@ -173,14 +167,14 @@ talus_status talus_recorder_begin(talus_recorder *r, talus_world *world, void *m
     r->keyframe_work = TALUS_KEYFRAME_WORK;
     unsigned char *p = r->memory;
     memcpy(p, "TALUSREC", 8);
-    tl_put32(p + 8, TL_RECORD_VERSION);
-    tl_put32(p + 12, tl_state_layout());
+    tl_put_word(p + 8, TL_RECORD_VERSION);
+    tl_put_word(p + 12, tl_state_layout());
     p += TL_RECORD_HEAD;
     talus_world_def def;
     talus_world_get_def(world, &def);
     const uint32_t words[5] = {def.body_capacity, def.shape_capacity, def.joint_capacity, def.contact_capacity,
                                def.event_capacity};
-    put_words(p + TL_CHUNK_HEAD, words, 5);
+    tl_put_words(p + TL_CHUNK_HEAD, words, 5);
     p += close_chunk(p, TL_CHUNK_WORLD, sizeof words, 0);
     p += write_hulls(r, world, p);
     r->geometry_bytes = world->geometry_bytes;
@@ -202,12 +196,12 @@ static size_t write_hashes(talus_recorder *r, const tl_header *h, unsigned char 
     for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
         if (hash[i] != r->hash[i]) {
             mask |= (uint64_t)1 << i;
-            tl_put32(at + size, hash[i]);
+            tl_put_word(at + size, hash[i]);
             size += 4;
             r->hash[i] = hash[i];
         }
     }
-    tl_put32(at, (uint32_t)mask), tl_put32(at + 4, (uint32_t)(mask >> 32));
+    tl_put_word(at, (uint32_t)mask), tl_put_word(at + 4, (uint32_t)(mask >> 32));
     return size;
 }
 
@@ -218,13 +212,13 @@ static size_t write_step(talus_recorder *r, const tl_header *h) {
         r->log.used = 0; /* what is left would not lead to the same state */
     }
     int whole = r->log.flips || (r->steps + r->log.steps) / WHOLE_EVERY != r->steps / WHOLE_EVERY;
-    tl_put32(at, (uint32_t)r->log.used), tl_put32(at + 4, r->log.lost), tl_put32(at + 8, (uint32_t)whole);
+    tl_put_word(at, (uint32_t)r->log.used), tl_put_word(at + 4, r->log.lost), tl_put_word(at + 8, (uint32_t)whole);
     size_t bytes = 12u + r->log.used;
     bytes += write_hashes(r, h, at + bytes);
     if (whole) {
         uint32_t hash[TL_STATE_COUNT];
         tl_state_hashes(h, hash);
-        put_words(at + bytes, hash, TL_STATE_COUNT);
+        tl_put_words(at + bytes, hash, TL_STATE_COUNT);
         bytes += sizeof hash;
     }
     r->steps += r->log.steps;

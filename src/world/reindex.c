@@ -5,13 +5,18 @@
 #include "base/bits.h"
 #include "stage/broad/refit.h"
 
+/* Whether a joint keeps its two bodies from colliding. */
+static int parts(const tl_joint_record *j) {
+    return (j->flags & (TL_JOINT_ALIVE | TL_JOINT_COLLIDE)) == TL_JOINT_ALIVE;
+}
+
 void tl_reindex_begin(tl_header *h, uint32_t bodies) {
     uint32_t rows = bodies > h->bodies.high ? bodies : h->bodies.high;
     memset(tl_island_parent(h), 0, rows * sizeof(uint32_t));
     for (uint32_t i = 0; i < h->joints.high; i++) {
         const tl_joint_record *j = &tl_joints(h)[i];
         tl_joint_group *was = &tl_joint_group_pool(h)[i];
-        was->lanes = (j->flags & (TL_JOINT_ALIVE | TL_JOINT_COLLIDE)) == TL_JOINT_ALIVE;
+        was->lanes = (uint32_t)parts(j);
         was->a[0] = j->body_a, was->b[0] = j->body_b;
     }
 }
@@ -26,22 +31,19 @@ static int is_shape(const tl_header *h, uint32_t i) {
     return i < h->shapes.high && (tl_shapes(h)[i].flags & TL_SHAPE_ALIVE) != 0;
 }
 
-static int is_link(uint32_t i, uint32_t high) { return i == TL_NONE || i < high; }
-static int is_side_link(uint32_t link, uint32_t high) { return link == TL_NONE || link >> 1 < high; }
-
 static int bodies_are_sound(const tl_header *h) {
     const tl_body_meta *bodies = tl_bodies(h);
     for (uint32_t i = 0; i < h->bodies.high; i++) {
         const tl_body_meta *m = &bodies[i];
         if (!(m->flags & TL_BODY_ALIVE)) {
-            if (!is_link(m->free_next, h->bodies.high)) {
+            if (!tl_is_index(m->free_next, h->bodies.high)) {
                 return 0;
             }
             continue;
         }
         int sleeps = tl_body_type(m) == TALUS_DYNAMIC && !(m->flags & TL_BODY_AWAKE);
-        if (tl_body_type(m) >= TALUS_BODY_TYPE_COUNT || !is_link(m->first_shape, h->shapes.high) ||
-            !is_side_link(m->first_joint, h->joints.high) || sleeps != (m->island != TL_NONE) ||
+        if (tl_body_type(m) >= TALUS_BODY_TYPE_COUNT || !tl_is_index(m->first_shape, h->shapes.high) ||
+            !tl_is_link(m->first_joint, h->joints.high) || sleeps != (m->island != TL_NONE) ||
             (sleeps && (!is_body(h, m->island) || bodies[m->island].island != m->island))) {
             return 0;
         }
@@ -52,7 +54,7 @@ static int bodies_are_sound(const tl_header *h) {
 static int shapes_are_sound(const tl_header *h) {
     for (uint32_t i = 0; i < h->shapes.high; i++) {
         const tl_shape_meta *m = &tl_shapes(h)[i];
-        if (!is_link(m->next, h->shapes.high) || ((m->flags & TL_SHAPE_ALIVE) && !is_body(h, m->body))) {
+        if (!tl_is_index(m->next, h->shapes.high) || ((m->flags & TL_SHAPE_ALIVE) && !is_body(h, m->body))) {
             return 0;
         }
     }
@@ -63,7 +65,7 @@ static int joints_are_sound(const tl_header *h) {
     for (uint32_t i = 0; i < h->joints.high; i++) {
         const tl_joint_record *j = &tl_joints(h)[i];
         if (!(j->flags & TL_JOINT_ALIVE)) {
-            if (!is_link(j->free_next, h->joints.high)) {
+            if (!tl_is_index(j->free_next, h->joints.high)) {
                 return 0;
             }
             continue;
@@ -73,7 +75,7 @@ static int joints_are_sound(const tl_header *h) {
             return 0;
         }
         for (int side = 0; side < 2; side++) {
-            if (!is_side_link(j->next[side], h->joints.high) || !is_side_link(j->previous[side], h->joints.high)) {
+            if (!tl_is_link(j->next[side], h->joints.high) || !tl_is_link(j->previous[side], h->joints.high)) {
                 return 0;
             }
         }
@@ -151,13 +153,16 @@ static void renew_shapes(tl_header *h, uint32_t rows) {
 
 /* --- bodies, contacts and joints ---------------------------------------------------------------- */
 
+static int is_awake(const tl_body_meta *m) {
+    return (m->flags & (TL_BODY_ALIVE | TL_BODY_AWAKE)) == (TL_BODY_ALIVE | TL_BODY_AWAKE);
+}
+
 /* Whether the bodies that are awake are those that were. */
 static int are_as_awake(const tl_header *h, uint32_t before) {
     const uint32_t *rows = tl_body_row(h);
     uint32_t differ = 0;
     for (uint32_t i = 0; i < h->bodies.high || i < before; i++) {
-        uint32_t awake = (tl_bodies(h)[i].flags & (TL_BODY_ALIVE | TL_BODY_AWAKE)) == (TL_BODY_ALIVE | TL_BODY_AWAKE);
-        differ |= awake ^ (rows[i] != 0);
+        differ |= (uint32_t)(is_awake(&tl_bodies(h)[i]) != (rows[i] != 0));
     }
     return !differ;
 }
@@ -167,7 +172,7 @@ static void renew_awake(tl_header *h) {
     memset(tl_body_way(h), 0, h->capacity[TL_COUNT_BODY] * sizeof(uint32_t));
     h->awake_bodies = h->awake_pairs = 0;
     for (uint32_t i = 0; i < h->bodies.high; i++) {
-        if ((tl_bodies(h)[i].flags & (TL_BODY_ALIVE | TL_BODY_AWAKE)) == (TL_BODY_ALIVE | TL_BODY_AWAKE)) {
+        if (is_awake(&tl_bodies(h)[i])) {
             tl_awake_body(h)[h->awake_bodies] = i;
             tl_body_row(h)[i] = ++h->awake_bodies;
         }
@@ -248,8 +253,7 @@ static void renew_parted(tl_header *h, uint32_t before) {
     for (uint32_t i = 0; i < before; i++) {
         const tl_joint_group *was = &tl_joint_group_pool(h)[i];
         const tl_joint_record *j = &tl_joints(h)[i];
-        int is = (j->flags & (TL_JOINT_ALIVE | TL_JOINT_COLLIDE)) == TL_JOINT_ALIVE && j->body_a == was->a[0] &&
-                 j->body_b == was->b[0];
+        int is = parts(j) && j->body_a == was->a[0] && j->body_b == was->b[0];
         if (was->lanes && !is) {
             mark_shapes(h, was->a[0]);
             mark_shapes(h, was->b[0]);

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/bits.h"
 #include "talus/snapshot.h"
 #include "world/command.h"
 #include "world/state.h"
@@ -36,9 +37,9 @@ static reading read_head(const talus_replay *r, size_t at, chunk *out) {
     if (left < TL_CHUNK_HEAD) {
         return READ_CUT;
     }
-    out->kind = tl_get32(p), out->bytes = tl_get32(p + 4), out->steps = tl_get32(p + 8);
+    out->kind = tl_get_word(p), out->bytes = tl_get_word(p + 4), out->steps = tl_get_word(p + 8);
     out->payload = p + TL_CHUNK_HEAD;
-    if (tl_get32(p + 16) != tl_record_checksum(p, 16) || out->kind < TL_CHUNK_WORLD || out->kind >= TL_CHUNK_KINDS ||
+    if (tl_get_word(p + 16) != tl_record_checksum(p, 16) || out->kind < TL_CHUNK_WORLD || out->kind >= TL_CHUNK_KINDS ||
         out->bytes % 4u) {
         return READ_DAMAGED;
     }
@@ -47,27 +48,17 @@ static reading read_head(const talus_replay *r, size_t at, chunk *out) {
 
 static size_t end_of(const talus_replay *r, const chunk *c) { return (size_t)(c->payload - r->bytes) + c->bytes; }
 
-static uint32_t bits_of(uint64_t x) {
-    uint32_t n = 0;
-    for (; x; x &= x - 1u) {
-        n++;
-    }
-    return n;
-}
-
-static uint64_t mask_of(const unsigned char *p) { return (uint64_t)tl_get32(p + 4) << 32 | tl_get32(p); }
-
 /* Whether the parts of a step's payload add up to it. */
 static int step_adds_up(const chunk *c) {
     if (c->bytes < 20u) {
         return 0;
     }
-    uint32_t used = tl_get32(c->payload), whole = tl_get32(c->payload + 8), left = c->bytes - 20u;
+    uint32_t used = tl_get_word(c->payload), whole = tl_get_word(c->payload + 8), left = c->bytes - 20u;
     if (used % 4u || used > left || whole > 1u) {
         return 0;
     }
-    uint64_t mask = mask_of(c->payload + 12u + used);
-    return mask >> (TL_STATE_COUNT - 1u) <= 1u && left - used == 4u * (bits_of(mask) + whole * TL_STATE_COUNT);
+    uint64_t mask = tl_get_long_word(c->payload + 12u + used);
+    return mask >> (TL_STATE_COUNT - 1u) <= 1u && left - used == 4u * (tl_bit_count(mask) + whole * TL_STATE_COUNT);
 }
 
 /* Takes in what a chunk says of the whole recording; 0 if it is not in its place. */
@@ -79,12 +70,12 @@ static int look_at(talus_replay *r, const chunk *c) {
             return 0;
         }
         r->def = talus_world_def_default();
-        r->def.body_capacity = tl_get32(c->payload), r->def.shape_capacity = tl_get32(c->payload + 4);
-        r->def.joint_capacity = tl_get32(c->payload + 8), r->def.contact_capacity = tl_get32(c->payload + 12);
-        r->def.event_capacity = tl_get32(c->payload + 16);
+        r->def.body_capacity = tl_get_word(c->payload), r->def.shape_capacity = tl_get_word(c->payload + 4);
+        r->def.joint_capacity = tl_get_word(c->payload + 8), r->def.contact_capacity = tl_get_word(c->payload + 12);
+        r->def.event_capacity = tl_get_word(c->payload + 16);
         return talus_world_size(&r->def) != 0;
     case TL_CHUNK_HULL: {
-        uint32_t offset = c->bytes >= 4u ? tl_get32(c->payload) : 1u;
+        uint32_t offset = c->bytes >= 4u ? tl_get_word(c->payload) : 1u;
         size_t end = (size_t)offset + c->bytes - 4u;
         if (!begun || offset % TALUS_BLOB_ALIGNMENT || c->bytes < 4u + TALUS_BLOB_ALIGNMENT || end < offset) {
             return 0;
@@ -126,10 +117,10 @@ talus_status talus_replay_open(talus_replay *r, const void *bytes, size_t size) 
     if (size < TL_RECORD_HEAD) {
         return fault(r, TALUS_FAULT_TOO_SHORT, size);
     }
-    if (tl_get32(r->bytes + 8) != TL_RECORD_VERSION) {
+    if (tl_get_word(r->bytes + 8) != TL_RECORD_VERSION) {
         return fault(r, TALUS_FAULT_OTHER_VERSION, 8);
     }
-    if (tl_get32(r->bytes + 12) != tl_state_layout()) {
+    if (tl_get_word(r->bytes + 12) != tl_state_layout()) {
         return fault(r, TALUS_FAULT_OTHER_LAYOUT, 12);
     }
     r->cut = 1;
@@ -140,7 +131,7 @@ talus_status talus_replay_open(talus_replay *r, const void *bytes, size_t size) 
         if (found == READ_CUT) {
             break;
         }
-        if (found == READ_DAMAGED || tl_get32(r->bytes + at + 12) != tl_record_checksum(c.payload, c.bytes) ||
+        if (found == READ_DAMAGED || tl_get_word(r->bytes + at + 12) != tl_record_checksum(c.payload, c.bytes) ||
             !look_at(r, &c)) {
             return fault(r, TALUS_FAULT_DAMAGED, at);
         }
@@ -161,7 +152,7 @@ static talus_status take_hulls(const talus_replay *r, unsigned char *region) {
             if (c.kind != TL_CHUNK_HULL) {
                 continue;
             }
-            unsigned char *place = region + tl_get32(c.payload);
+            unsigned char *place = region + tl_get_word(c.payload);
             if (pass == 0 ? !tl_record_get_hull(place, c.payload + 4u, c.bytes - 4u)
                           : talus_hull_validate(place, c.bytes - 4u) != TALUS_OK) {
                 return TALUS_BAD_BLOB;
@@ -171,15 +162,9 @@ static talus_status take_hulls(const talus_replay *r, unsigned char *region) {
     return TALUS_OK;
 }
 
-static void get_words(uint32_t *out, const unsigned char *at) {
-    for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
-        out[i] = tl_get32(at + 4u * i);
-    }
-}
-
 static void take_hashes(talus_replay *r, const chunk *keyframe) {
-    get_words(r->whole, keyframe->payload);
-    get_words(r->hash, keyframe->payload + TL_RECORD_HASHES / 2u);
+    tl_get_words(keyframe->payload, r->whole, TL_STATE_COUNT);
+    tl_get_words(keyframe->payload + TL_RECORD_HASHES / 2u, r->hash, TL_STATE_COUNT);
     r->has_whole = 1;
 }
 
@@ -253,20 +238,20 @@ int talus_replay_next(talus_replay *r) {
             take_hashes(r, &c);
         }
         if (c.kind == TL_CHUNK_STEP) {
-            r->command_bytes = tl_get32(c.payload);
-            r->lost = tl_get32(c.payload + 4);
-            r->has_whole = tl_get32(c.payload + 8) != 0;
+            r->command_bytes = tl_get_word(c.payload);
+            r->lost = tl_get_word(c.payload + 4);
+            r->has_whole = tl_get_word(c.payload + 8) != 0;
             r->commands = c.payload + 12;
             const unsigned char *p = r->commands + r->command_bytes;
-            uint64_t mask = mask_of(p);
+            uint64_t mask = tl_get_long_word(p);
             p += 8;
             for (uint32_t i = 0; i < TL_STATE_COUNT; i++) {
                 if (mask >> i & 1u) {
-                    r->hash[i] = tl_get32(p), p += 4;
+                    r->hash[i] = tl_get_word(p), p += 4;
                 }
             }
             if (r->has_whole) {
-                get_words(r->whole, p);
+                tl_get_words(p, r->whole, TL_STATE_COUNT);
             }
             r->step = c.steps;
             r->at = end_of(r, &c);

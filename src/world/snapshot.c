@@ -108,10 +108,7 @@ static unsigned char *put_contact(unsigned char *p, const tl_header *h, uint32_t
 
 /* Bytes of a contact with this code. */
 static size_t contact_bytes(const tl_header *h, uint32_t code) {
-    uint32_t count = code & 7u, bits = 0;
-    for (uint32_t k = code >> 20 & 0xffu; k; k &= k - 1u) {
-        bits++;
-    }
+    uint32_t count = code & 7u, bits = tl_bit_count(code >> 20 & 0xffu);
     return 8u + (h->shapes.high <= 0x10000u ? 4u : 8u) + 12u + (code >> 18 & 1u ? 16u : 0u) + 4u * bits +
            count * (24u + (code >> 19 & 1u ? 4u : 2u));
 }
@@ -268,7 +265,7 @@ static int is_snapshot(const tl_header *h, const unsigned char *p, size_t bytes,
             return 0;
         }
     }
-    uint64_t sum = (uint64_t)tl_get_word(p + 4u * HEAD_SUM_HIGH) << 32 | tl_get_word(p + 4u * HEAD_SUM);
+    uint64_t sum = tl_get_long_word(p + 4u * HEAD_SUM);
     if (tl_pack_checksum(p + HEAD_CHECKED, size - HEAD_CHECKED) != sum) {
         return 0;
     }
@@ -336,7 +333,7 @@ static const unsigned char *get_contacts(const unsigned char *p, const unsigned 
         if (end - p < 8) {
             return NULL;
         }
-        alive[w] = (uint64_t)tl_get_word(p + 4) << 32 | tl_get_word(p);
+        alive[w] = tl_get_long_word(p);
         p += 8;
         for (uint32_t c = w * 64u; c < h->contacts.high && c < w * 64u + 64u; c++) {
             if (!tl_bit_has(alive, c)) {

@@ -41,6 +41,7 @@ tl_live tl_state_rows(const tl_header *h, uint32_t column) {
     live.data = (unsigned char *)(uintptr_t)data;
     live.rows = 1;
     live.row_bytes = c->row_bytes;
+    live.word = c->word;
     return live;
 }
 
@@ -101,7 +102,7 @@ static size_t add_full_blocks(streams *s, const unsigned char *p, size_t words) 
 
 /* Adds words, the last sixteen of them filled up with zeros; those of eight bytes lowest half first. */
 static void add_words(streams *s, const unsigned char *p, size_t words, uint32_t word) {
-    int swap = word == 8u && tl_is_big_endian();
+    int swap = word == 8u && tl_high_byte_first();
     for (size_t i = swap ? 0 : add_full_blocks(s, p, words); i < words; i += STREAMS) {
         uint32_t w[STREAMS] = {0};
         memcpy(w, p + 4u * i, 4u * (words - i < STREAMS ? words - i : STREAMS));
@@ -363,7 +364,7 @@ talus_status tl_run_world_flip(talus_world *world, uint32_t i, talus_command *c)
         return TALUS_BAD_ARGUMENT;
     }
     uint32_t width = COLUMNS[f->column].word, byte = f->bit % (8u * width) / 8u;
-    byte = f->bit / (8u * width) * width + (tl_is_big_endian() ? width - 1u - byte : byte);
+    byte = f->bit / (8u * width) * width + (tl_high_byte_first() ? width - 1u - byte : byte);
     unsigned char *at = live.data + (size_t)f->row * live.row_bytes + byte;
     *at ^= (unsigned char)(1u << f->bit % 8u);
     if (talus_world_validate(world) != TALUS_OK) {

@@ -32,10 +32,4 @@ void tl_state_active_hashes(const tl_header *h, uint32_t out[TL_STATE_COUNT]);
 /* A number that changes with the names, the order and the sizes of the columns. */
 uint32_t tl_state_layout(void);
 
-/* Whether this machine keeps the highest byte first. */
-static inline int tl_is_big_endian(void) {
-    const uint32_t one = 1u;
-    return *(const unsigned char *)&one == 0;
-}
-
 #endif

@@ -31,8 +31,6 @@ static int header_is_sound(const tl_header *h) {
 
 /* --- bodies and shapes ------------------------------------------------------------------------ */
 
-static int link_in_range(uint32_t link, uint32_t high) { return link == TL_NONE || link >> 1 < high; }
-
 /* A dynamic body that sleeps is in a ring of its island; no other one is. */
 static int sleep_is_sound(const tl_header *h, uint32_t i) {
     const tl_body_meta *bodies = tl_bodies(h);
@@ -47,14 +45,13 @@ static int sleep_is_sound(const tl_header *h, uint32_t i) {
 static int body_is_sound(const tl_header *h, uint32_t i) {
     const tl_body_meta *m = &tl_bodies(h)[i];
     if (!(m->flags & TL_BODY_ALIVE)) {
-        return m->flags == 0 && tl_body_row(h)[i] == 0 && (m->free_next == TL_NONE || m->free_next < h->bodies.high);
+        return m->flags == 0 && tl_body_row(h)[i] == 0 && tl_is_index(m->free_next, h->bodies.high);
     }
     uint32_t row = tl_body_row(h)[i];
     int awake = (m->flags & TL_BODY_AWAKE) != 0;
-    return tl_body_type(m) < TALUS_BODY_TYPE_COUNT && (m->first_shape == TL_NONE || m->first_shape < h->shapes.high) &&
-           link_in_range(tl_body_links(h)[i].first_pair, h->pairs.high) &&
-           link_in_range(m->first_joint, h->joints.high) && awake == (row != 0) &&
-           (row == 0 || (row <= h->awake_bodies && tl_awake_body(h)[row - 1u] == i)) &&
+    return tl_body_type(m) < TALUS_BODY_TYPE_COUNT && tl_is_index(m->first_shape, h->shapes.high) &&
+           tl_is_link(tl_body_links(h)[i].first_pair, h->pairs.high) && tl_is_link(m->first_joint, h->joints.high) &&
+           awake == (row != 0) && (row == 0 || (row <= h->awake_bodies && tl_awake_body(h)[row - 1u] == i)) &&
            (row == 0 || tl_body_type(m) != TALUS_STATIC) && sleep_is_sound(h, i);
 }
 
@@ -175,7 +172,7 @@ static int pair_is_sound(const tl_header *h, uint32_t i) {
         return 0;
     }
     for (unsigned side = 0; side < 2u; side++) {
-        if (!link_in_range(l->next[side], h->pairs.high) || !link_in_range(l->previous[side], h->pairs.high)) {
+        if (!tl_is_link(l->next[side], h->pairs.high) || !tl_is_link(l->previous[side], h->pairs.high)) {
             return 0;
         }
     }
@@ -245,7 +242,7 @@ static int joint_is_sound(const talus_world *world, uint32_t i) {
     const tl_header *h = tl_header_of(world);
     const tl_joint_record *j = &tl_joints(h)[i];
     if (!(j->flags & TL_JOINT_ALIVE)) {
-        return j->flags == 0 && (j->free_next == TL_NONE || j->free_next < h->joints.high);
+        return j->flags == 0 && tl_is_index(j->free_next, h->joints.high);
     }
     if (j->body_a >= h->bodies.high || j->body_b >= h->bodies.high || j->body_a == j->body_b ||
         !(tl_bodies(h)[j->body_a].flags & TL_BODY_ALIVE) || !(tl_bodies(h)[j->body_b].flags & TL_BODY_ALIVE) ||
@@ -254,7 +251,7 @@ static int joint_is_sound(const talus_world *world, uint32_t i) {
         return 0;
     }
     for (unsigned side = 0; side < 2u; side++) {
-        if (!link_in_range(j->next[side], h->joints.high) || !link_in_range(j->previous[side], h->joints.high)) {
+        if (!tl_is_link(j->next[side], h->joints.high) || !tl_is_link(j->previous[side], h->joints.high)) {
             return 0;
         }
     }

@@ -27,17 +27,11 @@ static inline talus_status tl_check_pose(const talus_pose *p) {
     return q.x == 0.0f && q.y == 0.0f && q.z == 0.0f && q.w == 0.0f ? TALUS_BAD_ARGUMENT : tl_check_point(p->position);
 }
 
-/* Takes the slot that tl_pool_top gave, `next` being its link in the free list. */
-static inline void tl_pool_take(tl_pool *pool, uint32_t i, uint32_t next) {
-    if (i == pool->free) {
-        pool->free = next;
-    } else {
-        pool->high++;
-    }
-    pool->used++;
-    pool->peak = pool->used > pool->peak ? pool->used : pool->peak;
-}
 static inline uint32_t tl_next_generation(uint32_t generation) { return generation + 1u ? generation + 1u : 1u; }
+
+/* Whether a number that came from outside is an index below `high`, or a link (twice an index plus a side), or none. */
+static inline int tl_is_index(uint32_t i, uint32_t high) { return i == TL_NONE || i < high; }
+static inline int tl_is_link(uint32_t link, uint32_t high) { return link == TL_NONE || link >> 1 < high; }
 
 /* The most bytes of a snapshot with every capacity used up. */
 size_t tl_snapshot_most(const tl_header *h);

@@ -51,12 +51,12 @@ static void make_tape(tape *t) {
 /* Makes the checksums of a recording's chunks anew, as far as their lengths lead. */
 static void sum_up(unsigned char *bytes, size_t size) {
     for (size_t at = TL_RECORD_HEAD; at + TL_CHUNK_HEAD <= size;) {
-        size_t length = tl_get32(bytes + at + 4);
+        size_t length = tl_get_word(bytes + at + 4);
         if (length % 4u || length > size - at - TL_CHUNK_HEAD) {
             return;
         }
-        tl_put32(bytes + at + 12, tl_record_checksum(bytes + at + TL_CHUNK_HEAD, length));
-        tl_put32(bytes + at + 16, tl_record_checksum(bytes + at, 16));
+        tl_put_word(bytes + at + 12, tl_record_checksum(bytes + at + TL_CHUNK_HEAD, length));
+        tl_put_word(bytes + at + 16, tl_record_checksum(bytes + at, 16));
         at += TL_CHUNK_HEAD + length;
     }
 }
@@ -122,8 +122,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         }
     } else { /* the last step anew: these commands, no hashes */
         unsigned char *at = bytes + sound.last;
-        tl_put32(at + 4, (uint32_t)extra + 16u);
-        tl_put32(at + TL_CHUNK_HEAD, (uint32_t)extra), tl_put32(at + TL_CHUNK_HEAD + 4, 0);
+        tl_put_word(at + 4, (uint32_t)extra + 16u);
+        tl_put_word(at + TL_CHUNK_HEAD, (uint32_t)extra), tl_put_word(at + TL_CHUNK_HEAD + 4, 0);
         memcpy(at + TL_CHUNK_HEAD + 8, data + 1, extra);
         memset(at + TL_CHUNK_HEAD + 8 + extra, 0, 8);
         length = sound.last + TL_CHUNK_HEAD + extra + 16u;

@@ -8,65 +8,7 @@
 
 #include <cmocka.h>
 
-#include <ccd/ccd.h>
-#include <ccd/quat.h>
-
-#include "../unit/collide_brute.h"
-
-typedef struct placed {
-    const tl_convex *shape;
-    d_pose pose;
-} placed;
-
-static d3 support_point(const tl_convex *s, d3 d) {
-    const talus_geometry *g = &s->geometry;
-    double h = (double)g->half_height, rt = (double)g->radius_top, rb = (double)g->radius_bottom;
-    double radial = sqrt(d.x * d.x + d.z * d.z);
-    d3 u = d3_unit(d);
-    switch (g->type) {
-    case TALUS_SPHERE:
-        return d3_scale(u, (double)g->radius);
-    case TALUS_CAPSULE: {
-        int top = h * u.y + rt > rb - h * u.y;
-        return d3_add(d3_make(0.0, top ? h : -h, 0.0), d3_scale(u, top ? rt : rb));
-    }
-    case TALUS_CYLINDER: {
-        int top = h * d.y + rt * radial > rb * radial - h * d.y;
-        double r = radial > 0.0 ? (top ? rt : rb) / radial : 0.0;
-        return d3_make(d.x * r, top ? h : -h, d.z * r);
-    }
-    case TALUS_BOX:
-        return d3_make(d.x < 0.0 ? -(double)g->half.x : (double)g->half.x,
-                       d.y < 0.0 ? -(double)g->half.y : (double)g->half.y,
-                       d.z < 0.0 ? -(double)g->half.z : (double)g->half.z);
-    case TALUS_HULL:
-    case TALUS_SHAPE_TYPE_COUNT:
-    default: {
-        d3 best = d3_of(tl_hull_point(s->hull, 0));
-        for (uint32_t i = 1; i < s->hull->vertex_count; ++i) {
-            d3 p = d3_of(tl_hull_point(s->hull, i));
-            best = d3_dot(p, d) > d3_dot(best, d) ? p : best;
-        }
-        return best;
-    }
-    }
-}
-
-static void ccd_support(const void *object, const ccd_vec3_t *dir, ccd_vec3_t *out) {
-    const placed *p = object;
-    d3 d = d_rotate_back(&p->pose, d3_make(ccdVec3X(dir), ccdVec3Y(dir), ccdVec3Z(dir)));
-    d3 v = d3_add(d_rotate(&p->pose, support_point(p->shape, d)), p->pose.t);
-    ccdVec3Set(out, v.x, v.y, v.z);
-}
-
-static void ccd_center(const void *object, ccd_vec3_t *out) {
-    const placed *p = object;
-    d3 c = p->pose.t;
-    if (p->shape->geometry.type == TALUS_HULL) {
-        c = d3_add(d_rotate(&p->pose, d3_of(p->shape->hull->centroid)), c);
-    }
-    ccdVec3Set(out, c.x, c.y, c.z);
-}
+#include "ccd_kit.h"
 
 static int failures, overlaps, compared, flat, agreed;
 
@@ -82,13 +24,7 @@ static void compare(int ka, int kb) {
     tl_convex a = brute_shape(ka, 0.3f, 1.0f), b = brute_shape(kb, 0.3f, 1.0f);
     talus_pose pose = brute_pose(0.1f, 2.2f), identity = tl_pose_identity();
     placed pa = {&a, d_pose_of(&identity)}, pb = {&b, d_pose_of(&pose)};
-    ccd_t ccd;
-    CCD_INIT(&ccd);
-    ccd.support1 = ccd.support2 = ccd_support;
-    ccd.center1 = ccd.center2 = ccd_center;
-    ccd.max_iterations = 200;
-    ccd.epa_tolerance = 1e-5;
-    ccd.mpr_tolerance = 1e-6;
+    ccd_t ccd = ccd_settings(1e-5, 1e-6);
     tl_pair_cache cache = {{0, 0, 0, 0}};
     tl_manifold m;
     tl_collide(&a, &b, &pose, 10.0f, &cache, &m);

@@ -8,39 +8,8 @@
 
 #include <cmocka.h>
 
-#include <ccd/ccd.h>
-#include <ccd/quat.h>
-
-#include "../unit/collide_brute.h"
+#include "ccd_kit.h"
 #include "talus/query.h"
-
-typedef struct placed {
-    const tl_convex *shape;
-    d_pose pose;
-} placed;
-
-static void support(const void *object, const ccd_vec3_t *dir, ccd_vec3_t *out) {
-    const placed *p = object;
-    d3 d = d_rotate_back(&p->pose, d3_make(ccdVec3X(dir), ccdVec3Y(dir), ccdVec3Z(dir))), best;
-    talus_vec3 half = p->shape->geometry.half;
-    if (p->shape->hull) {
-        best = d3_of(tl_hull_point(p->shape->hull, 0));
-        for (uint32_t i = 1; i < p->shape->hull->vertex_count; ++i) {
-            d3 v = d3_of(tl_hull_point(p->shape->hull, i));
-            best = d3_dot(v, d) > d3_dot(best, d) ? v : best;
-        }
-    } else {
-        best = d3_make(copysign((double)half.x, d.x), copysign((double)half.y, d.y), copysign((double)half.z, d.z));
-    }
-    best = d3_add(d_rotate(&p->pose, best), p->pose.t);
-    ccdVec3Set(out, best.x, best.y, best.z);
-}
-
-static void center(const void *object, ccd_vec3_t *out) {
-    const placed *p = object;
-    d3 c = p->shape->hull ? d3_add(d_rotate(&p->pose, d3_of(p->shape->hull->centroid)), p->pose.t) : p->pose.t;
-    ccdVec3Set(out, c.x, c.y, c.z);
-}
 
 static talus_convex convex_of(const tl_convex *s) {
     talus_convex c;
@@ -61,13 +30,7 @@ static void random_pairs(void **state) {
         talus_pose here = tl_pose_identity(), there = brute_pose(0.1f, 2.2f);
         placed pa = {&a, d_pose_of(&here)}, pb = {&b, d_pose_of(&there)};
         d_pair pair = {&a, &b, pb.pose};
-        ccd_t ccd;
-        CCD_INIT(&ccd);
-        ccd.support1 = ccd.support2 = support;
-        ccd.center1 = ccd.center2 = center;
-        ccd.max_iterations = 200;
-        ccd.epa_tolerance = 1e-6;
-        ccd.mpr_tolerance = 1e-7;
+        ccd_t ccd = ccd_settings(1e-6, 1e-7);
         talus_separation s;
         talus_depth d;
         assert_int_equal(talus_distance(&ca, &here, &cb, &there, NULL, &s), TALUS_OK);

@@ -187,13 +187,13 @@ static void machines_that_err_are_named(void **state) {
     write_bytes(A, (const char *)a.bytes, a.size);
     for (size_t at = TL_RECORD_HEAD; at < a.size;) {
         unsigned char *chunk = a.bytes + at, *payload = chunk + TL_CHUNK_HEAD;
-        uint32_t bytes = tl_get32(chunk + 4);
-        if (tl_get32(chunk) == TL_CHUNK_STEP && tl_get32(chunk + 8) == 23u) {
-            unsigned char *mask = payload + 12u + tl_get32(payload);
-            assert_true(tl_get32(mask) & 8u); /* body_velocity, after counts and body_pose */
+        uint32_t bytes = tl_get_word(chunk + 4);
+        if (tl_get_word(chunk) == TL_CHUNK_STEP && tl_get_word(chunk + 8) == 23u) {
+            unsigned char *mask = payload + 12u + tl_get_word(payload);
+            assert_true(tl_get_word(mask) & 8u); /* body_velocity, after counts and body_pose */
             mask[8u + 4u * 2u] ^= 1u;
-            tl_put32(chunk + 12, tl_record_checksum(payload, bytes));
-            tl_put32(chunk + 16, tl_record_checksum(chunk, 16));
+            tl_put_word(chunk + 12, tl_record_checksum(payload, bytes));
+            tl_put_word(chunk + 16, tl_record_checksum(chunk, 16));
         }
         at += TL_CHUNK_HEAD + bytes;
     }

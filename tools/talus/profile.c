@@ -21,21 +21,20 @@
 #define REDRAW 100000000u /* ns */
 
 typedef struct profile_options {
-    const char *scene, *csv, *trace, *html;
-    gltf_build_options build;
-    uint64_t steps; /* UINT64_MAX: the scene's */
+    source_options source; /* --dt, --iterations and --threads are not taken */
+    const char *csv, *trace, *html;
     uint32_t runs;
     double budget_ms; /* 0: none */
     int json, compare;
 } profile_options;
 
-enum { STEPS = 1, RUN_COUNT, SUBSTEPS, ISA, NO_SLEEP, JSON, CSV, TRACE, HTML, BUDGET, COMPARE, HELP };
+enum { RUN_COUNT = SOURCE_OPTION_COUNT, JSON, CSV, TRACE, HTML, BUDGET, COMPARE, HELP };
 
-static const struct option long_options[] = {{"steps", required_argument, NULL, STEPS},
+static const struct option long_options[] = {{"steps", required_argument, NULL, SOURCE_STEPS},
                                              {"runs", required_argument, NULL, RUN_COUNT},
-                                             {"substeps", required_argument, NULL, SUBSTEPS},
-                                             {"isa", required_argument, NULL, ISA},
-                                             {"no-sleep", no_argument, NULL, NO_SLEEP},
+                                             {"substeps", required_argument, NULL, SOURCE_SUBSTEPS},
+                                             {"isa", required_argument, NULL, SOURCE_ISA},
+                                             {"no-sleep", no_argument, NULL, SOURCE_NO_SLEEP},
                                              {"json", no_argument, NULL, JSON},
                                              {"csv", required_argument, NULL, CSV},
                                              {"trace", required_argument, NULL, TRACE},
@@ -48,25 +47,18 @@ static const struct option long_options[] = {{"steps", required_argument, NULL, 
 static int take_option(int option, profile_options *out) {
     uint64_t number = 0;
     switch (option) {
-    case STEPS:
-        return source_whole("--steps", optarg, 1, MOST_STEPS, &out->steps) ? 0 : TOOL_USAGE;
+    case SOURCE_STEPS: /* it holds a frame of each */
+        return source_whole("--steps", optarg, 1, MOST_STEPS, &out->source.steps) ? 0 : TOOL_USAGE;
     case RUN_COUNT:
         if (!source_whole("--runs", optarg, 1, MOST_RUNS, &number)) {
             return TOOL_USAGE;
         }
         out->runs = (uint32_t)number;
         return 0;
-    case SUBSTEPS:
-        if (!source_whole("--substeps", optarg, 1, TALUS_MAX_SUBSTEPS, &number)) {
-            return TOOL_USAGE;
-        }
-        out->build.substeps = (uint32_t)number;
-        return 0;
-    case ISA:
-        return source_isa(optarg, &out->build.isa);
-    case NO_SLEEP:
-        out->build.no_sleep = 1;
-        return 0;
+    case SOURCE_SUBSTEPS:
+    case SOURCE_ISA:
+    case SOURCE_NO_SLEEP:
+        return source_take_option(option, optarg, &out->source);
     case JSON:
         out->json = 1;
         return 0;
@@ -178,13 +170,15 @@ static int profile(const profile_options *options) {
     profile_source from;
     timeline t;
     live view = {options->budget_ms, 0, 0};
-    int recorded = options->scene[0] != '@' && recording_is(options->scene);
-    if (recorded && (options->build.no_sleep || options->build.substeps != 0)) {
+    int recorded = options->source.scene[0] != '@' && recording_is(options->source.scene);
+    if (recorded && (options->source.build.no_sleep || options->source.build.substeps != 0)) {
         return tool_fail(TOOL_USAGE, "profile: %s is a recording: sleep and sub-steps are those it was recorded with",
-                         options->scene);
+                         options->source.scene);
     }
-    int status = recorded ? profile_open_recording(&from, options->scene, options->build.isa, options->steps)
-                          : profile_open_scene(&from, options->scene, &options->build, options->steps);
+    int status =
+        recorded
+            ? profile_open_recording(&from, options->source.scene, options->source.build.isa, options->source.steps)
+            : profile_open_scene(&from, options->source.scene, &options->source.build, options->source.steps);
     if (status != 0) {
         return status;
     }
@@ -207,9 +201,8 @@ int tool_profile(int count, char **arguments) {
     profile_options options;
     arguments[0] = name;
     memset(&options, 0, sizeof options);
-    options.steps = UINT64_MAX;
     options.runs = RUNS;
-    options.build.isa = TALUS_ISA_BEST;
+    options.source = source_options_default();
     int taken = 0;
     for (int option; (option = getopt_long(count, arguments, "", long_options, NULL)) != -1;) {
         int status = option == HELP ? 0 : take_option(option, &options);
@@ -233,7 +226,7 @@ int tool_profile(int count, char **arguments) {
         return tool_fail(TOOL_USAGE, "profile: %s; see: talus help profile",
                          optind < count ? "one scene at a time" : "the name of a scene is missing");
     }
-    options.scene = arguments[optind];
+    options.source.scene = arguments[optind];
     if (options.json + to_output(options.csv) + to_output(options.trace) + to_output(options.html) > 1) {
         return tool_fail(TOOL_USAGE,
                          "profile: only one of --json, --csv -, --trace - and --html - can have the standard "

@@ -16,7 +16,7 @@ tl_convex tl_shape_convex(const tl_header *h, const void *geometry, uint32_t sha
     return c;
 }
 
-static talus_pose world_pose(const tl_header *h, uint32_t shape) {
+talus_pose tl_shape_world_pose(const tl_header *h, uint32_t shape) {
     talus_pose body = tl_row_pose_of(&tl_body_pose(h)[tl_shapes(h)[shape].body]);
     talus_pose place = tl_row_pose_of(&tl_shape_place(h)[shape]);
     return tl_pose_mul(&body, &place);
@@ -24,12 +24,20 @@ static talus_pose world_pose(const tl_header *h, uint32_t shape) {
 
 talus_aabb tl_shape_box(const tl_header *h, const void *geometry, uint32_t shape) {
     tl_convex convex = tl_shape_convex(h, geometry, shape);
-    talus_pose pose = world_pose(h, shape);
+    talus_pose pose = tl_shape_world_pose(h, shape);
     return tl_convex_aabb(&convex, &pose);
 }
 
 static float margin_of(const tl_header *h, uint32_t shape) {
     return tl_min(FAT_MARGIN, FAT_SHARE * tl_shape_place(h)[shape].f[7]);
+}
+
+/* A box with a margin on every side and a way that it may go. */
+static talus_aabb grown(const talus_aabb *box, float margin, talus_vec3 way) {
+    talus_vec3 m = tl_v(margin, margin, margin), zero = tl_v(0.0f, 0.0f, 0.0f);
+    talus_aabb r = {tl_add(tl_sub(box->lower, m), tl_min3(way, zero)),
+                    tl_add(tl_add(box->upper, m), tl_max3(way, zero))};
+    return r;
 }
 
 static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
@@ -38,12 +46,7 @@ static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb 
         return *box;
     }
     float margin = margin_of(h, shape) + h->settings.speculative_margin;
-    talus_vec3 m = tl_v(margin, margin, margin);
-    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[meta->body]), FAT_STEPS * dt),
-               zero = tl_v(0.0f, 0.0f, 0.0f);
-    talus_aabb fat = {tl_add(tl_sub(box->lower, m), tl_min3(way, zero)),
-                      tl_add(tl_add(box->upper, m), tl_max3(way, zero))};
-    return fat;
+    return grown(box, margin, tl_scale(tl_row_xyz(&tl_body_velocity(h)[meta->body]), FAT_STEPS * dt));
 }
 
 static void note_looked(tl_header *h, uint32_t shape, float free) {
@@ -89,13 +92,8 @@ static talus_aabb swept_of(const tl_header *h, uint32_t shape, const talus_aabb 
     if (tl_body_type(&tl_bodies(h)[tl_shapes(h)[shape].body]) == TALUS_STATIC) {
         return *box; /* as its fat box: the margin is on the other one */
     }
-    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[tl_shapes(h)[shape].body]), dt),
-               zero = tl_v(0.0f, 0.0f, 0.0f);
-    float m = h->settings.speculative_margin;
-    talus_vec3 margin = tl_v(m, m, m);
-    talus_aabb swept = {tl_add(tl_sub(box->lower, margin), tl_min3(way, zero)),
-                        tl_add(tl_add(box->upper, margin), tl_max3(way, zero))};
-    return swept;
+    talus_vec3 way = tl_scale(tl_row_xyz(&tl_body_velocity(h)[tl_shapes(h)[shape].body]), dt);
+    return grown(box, h->settings.speculative_margin, way);
 }
 
 /* m: the least distance from a box to the faces of the fat box around it, beside the speculative margin. */

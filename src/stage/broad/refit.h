@@ -6,7 +6,8 @@
 #include "collide/collide.h"
 #include "stage/broad/tree.h"
 
-/* A shape with its hull found, and its box at the body's pose. */
+/* Where a shape stands; the shape with its hull found; its box at the body's pose. */
+talus_pose tl_shape_world_pose(const tl_header *h, uint32_t shape);
 tl_convex tl_shape_convex(const tl_header *h, const void *geometry, uint32_t shape);
 talus_aabb tl_shape_box(const tl_header *h, const void *geometry, uint32_t shape);
 

@@ -19,13 +19,7 @@ static int is_leaf(const tl_tree_node *n) { return n->child[0] == TL_NONE; }
 
 static uint32_t take_node(tl_header *h) {
     uint32_t i = tl_pool_top(&h->nodes, h->capacity[TL_COUNT_NODE]);
-    tl_tree_node *n = &tl_nodes(h)[i];
-    if (i == h->nodes.free) {
-        h->nodes.free = n->parent;
-    } else {
-        h->nodes.high++;
-    }
-    h->nodes.used++;
+    tl_pool_take(&h->nodes, i, tl_nodes(h)[i].parent);
     return i;
 }
 

@@ -34,9 +34,6 @@ static float impulse_of(const old_points *old, uint32_t id) {
     return 0.0f;
 }
 
-/* Whether a body has no row of its own: its points are then kept in the world. */
-static int is_fixed(const tl_header *h, uint32_t body) { return !tl_body_row(h)[body] && !tl_body_is_dynamic(h, body); }
-
 /* Puts a manifold, given in shape a's frame, into the bodies' mass frames; pa and pb are the shapes in the world. */
 static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const talus_pose *b_in_a,
                            const talus_pose *pa, const talus_pose *pb) {
@@ -44,8 +41,8 @@ static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const
     tl_contact_head *head = &tl_heads(h)[c];
     tl_contact_points *points = &tl_points(h)[c];
     old_points old;
-    talus_pose place_a = is_fixed(h, meta->body_a) ? *pa : tl_row_pose_of(&tl_shape_place(h)[meta->shape_a]);
-    talus_pose place_b = is_fixed(h, meta->body_b) ? *pb : tl_row_pose_of(&tl_shape_place(h)[meta->shape_b]);
+    talus_pose place_a = tl_body_is_fixed(h, meta->body_a) ? *pa : tl_row_pose_of(&tl_shape_place(h)[meta->shape_a]);
+    talus_pose place_b = tl_body_is_fixed(h, meta->body_b) ? *pb : tl_row_pose_of(&tl_shape_place(h)[meta->shape_b]);
     keep_old(points, meta->count, &old);
     for (uint32_t i = 0; i < m->count; i++) {
         const tl_manifold_point *p = &m->point[i];
@@ -73,12 +70,6 @@ static float margin_of(const tl_step *step, uint32_t body_a, uint32_t body_b) {
     return step->h->settings.speculative_margin + tl_min(speed, 1e6f) * step->dt;
 }
 
-static talus_pose shape_pose(const tl_header *h, uint32_t shape) {
-    talus_pose b = tl_row_pose_of(&tl_body_pose(h)[tl_shapes(h)[shape].body]);
-    talus_pose place = tl_row_pose_of(&tl_shape_place(h)[shape]);
-    return tl_pose_mul(&b, &place);
-}
-
 /* Two shapes as the pair queries take them. */
 typedef struct query {
     uint32_t shape_a, shape_b, body_a, body_b;
@@ -93,7 +84,7 @@ static query query_of(const tl_step *step, uint32_t shape_a, uint32_t shape_b) {
     q.shape_a = shape_a, q.shape_b = shape_b;
     q.body_a = tl_shapes(h)[shape_a].body, q.body_b = tl_shapes(h)[shape_b].body;
     q.a = tl_shape_convex(h, step->geometry, shape_a), q.b = tl_shape_convex(h, step->geometry, shape_b);
-    q.pa = shape_pose(h, shape_a), q.pb = shape_pose(h, shape_b);
+    q.pa = tl_shape_world_pose(h, shape_a), q.pb = tl_shape_world_pose(h, shape_b);
     q.b_in_a = tl_pose_relative(&q.pa, &q.pb);
     q.b_in_a.rotation = tl_quat_normalize(q.b_in_a.rotation);
     int senses = ((tl_shapes(h)[shape_a].flags | tl_shapes(h)[shape_b].flags) & TL_SHAPE_SENSOR) != 0;
@@ -101,14 +92,16 @@ static query query_of(const tl_step *step, uint32_t shape_a, uint32_t shape_b) {
     return q;
 }
 
-/* m: how far the balls around two bodies' mass centres are apart, at least; 0 where that is not worth asking. */
-static float ball_gap(const tl_header *h, uint32_t body_a, uint32_t body_b) {
+/* Whether the balls around two bodies' mass centres tell already that they do not touch, being *gap (m) apart. */
+static int parted_by_balls(const tl_step *step, uint32_t body_a, uint32_t body_b, float *gap) {
+    const tl_header *h = step->h;
     if (!tl_body_is_dynamic(h, body_a) || !tl_body_is_dynamic(h, body_b)) {
-        return 0.0f; /* what is not dynamic tends to be large */
+        return 0; /* what is not dynamic tends to be large */
     }
     const tl_row8 *a = &tl_body_pose(h)[body_a], *b = &tl_body_pose(h)[body_b];
     const tl_body_inertia *in = tl_body_inertias(h);
-    return tl_length(tl_sub(tl_row_xyz(b), tl_row_xyz(a))) - in[body_a].reach - in[body_b].reach;
+    *gap = tl_length(tl_sub(tl_row_xyz(b), tl_row_xyz(a))) - in[body_a].reach - in[body_b].reach;
+    return *gap > 0.0f && *gap > margin_of(step, body_a, body_b);
 }
 
 /* m: what rounding may make of a distance between two shapes, many times over. */
@@ -153,8 +146,8 @@ static void make_manifold(tl_step *step, uint32_t c) {
 static void update_contact(tl_step *step, uint32_t c) {
     tl_header *h = step->h;
     const tl_contact_meta *meta = &tl_contacts(h)[c];
-    float gap = ball_gap(h, meta->body_a, meta->body_b);
-    if (gap > 0.0f && gap > margin_of(step, meta->body_a, meta->body_b)) {
+    float gap;
+    if (parted_by_balls(step, meta->body_a, meta->body_b, &gap)) {
         end_touch(h, c, gap);
     } else {
         make_manifold(step, c);
@@ -191,9 +184,7 @@ static void update_contacts(tl_step *step) {
 static int touches(tl_step *step, uint32_t shape_a, uint32_t shape_b, tl_pair_cache *hint, float *gap) {
     tl_header *h = step->h;
     uint32_t body_a = tl_shapes(h)[shape_a].body, body_b = tl_shapes(h)[shape_b].body;
-    float balls = ball_gap(h, body_a, body_b);
-    if (balls > 0.0f && balls > margin_of(step, body_a, body_b)) {
-        *gap = balls;
+    if (parted_by_balls(step, body_a, body_b, gap)) {
         return 0;
     }
     query q = query_of(step, shape_a, shape_b);
@@ -322,7 +313,7 @@ void tl_stage_narrow(tl_step *step) {
         look_around(step, tl_moved_shape(h)[k], &found);
     }
     n->contacts.dropped = found.seen - found.count;
-    tl_sort_long_words(tl_new_touch(h), found.count);
+    tl_sort_keys(tl_new_touch(h), found.count);
     for (uint32_t k = 0; k < found.count; k++) {
         uint64_t key = tl_new_touch(h)[k];
         begin_touch(step, (uint32_t)(key >> 32), (uint32_t)key);

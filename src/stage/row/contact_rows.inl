@@ -107,15 +107,20 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
     *lever = tl_f8_mul(ways, scale);
 }
 
-/* From the speed of approach when the step began to the one at which the surfaces meet, gaining or losing what gravity
- * does over the gap: v^2 = v0^2 + 2 a s. */
-static void prepare_bounce(const tl_step *step, tl_contact_group *g, v8 n) {
-    tl_f8 r[8], zero = tl_f8_zero();
+/* m/s^2: how the forces draw b towards a. */
+static v8 closing_of(const tl_step *step, const tl_contact_group *g) {
     const float *forces = tl_row_force(step->h)->f;
+    tl_f8 r[8];
     tl_f8_load_rows(forces, g->a, r);
     v8 a = v8_of(r[0], r[1], r[2]);
     tl_f8_load_rows(forces, g->b, r);
-    tl_f8 closing = v8_dot(n, v8_sub(a, v8_of(r[0], r[1], r[2])));
+    return v8_sub(a, v8_of(r[0], r[1], r[2]));
+}
+
+/* From the speed of approach when the step began to the one at which the surfaces meet, gaining or losing what gravity
+ * does over the gap: v^2 = v0^2 + 2 a s. */
+static void prepare_bounce(const tl_step *step, tl_contact_group *g, v8 n) {
+    tl_f8 zero = tl_f8_zero(), closing = v8_dot(n, closing_of(step, g));
     for (uint32_t p = 0; p < g->points; p++) {
         tl_f8 speed = tl_f8_load(g->point[p].approach), gap = tl_f8_max(tl_f8_load(g->point[p].gap), zero);
         tl_f8 square = tl_f8_mad(tl_f8_mul(speed, speed), tl_f8_mul(tl_f8_set1(2.0f), closing), gap);

@@ -31,6 +31,31 @@ static inline void store_pair(float *velocities, const uint32_t *a, const uint32
     tl_f8_store_rows(velocities, b, rb);
 }
 
+/* How far eight pairs of bodies have gone since the step began: the way of the centres along the normal, b against a,
+ * and the whitened turns. */
+typedef struct pair_motion {
+    tl_f8 way;
+    v8 da, db;
+} pair_motion;
+
+static inline pair_motion load_motion(const tl_step *step, const tl_contact_group *g, v8 n) {
+    const float *moves = tl_row_moved(step->h)->f;
+    pair_motion m;
+    tl_f8 r[8];
+    tl_f8_load_rows(moves, g->a, r);
+    v8 xa = v8_of(r[0], r[1], r[2]);
+    m.da = v8_of(r[3], r[4], r[5]);
+    tl_f8_load_rows(moves, g->b, r);
+    m.db = v8_of(r[3], r[4], r[5]);
+    m.way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
+    return m;
+}
+
+/* m: the separation of a point's surfaces where the bodies are now. */
+static inline tl_f8 gap_now(const pair_motion *m, const tl_contact_lane_point *c, v8 ja, v8 jb) {
+    return tl_f8_add(tl_f8_add(tl_f8_load(c->gap), m->way), tl_f8_sub(v8_dot(jb, m->db), v8_dot(ja, m->da)));
+}
+
 /* The relative velocity along a row, of b against a. */
 static inline tl_f8 row_speed(const pair_velocity *p, v8 n, v8 ja, v8 jb) {
     return tl_f8_add(v8_dot(n, v8_sub(p->vb, p->va)), tl_f8_sub(v8_dot(jb, p->ub), v8_dot(ja, p->ua)));
@@ -121,19 +146,14 @@ static inline void solve_friction(const tl_step *step, tl_contact_group *g, pair
 }
 
 static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_velocity *p, v8 n, int with_bias) {
-    tl_f8 r[8], zero = tl_f8_zero(), one = tl_f8_set1(1.0f), inverse_h = tl_f8_set1(step->inverse_sub);
+    tl_f8 zero = tl_f8_zero(), one = tl_f8_set1(1.0f), inverse_h = tl_f8_set1(step->inverse_sub);
     tl_f8 rate = tl_f8_set1(step->bias_rate), push = tl_f8_set1(-step->h->settings.push_speed);
     tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
-    const float *moves = tl_row_moved(step->h)->f;
-    tl_f8_load_rows(moves, g->a, r);
-    v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
-    tl_f8_load_rows(moves, g->b, r);
-    v8 db = v8_of(r[3], r[4], r[5]);
-    tl_f8 way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
+    pair_motion moved = load_motion(step, g, n);
     for (uint32_t i = 0; i < g->points; i++) {
         tl_contact_lane_point *c = &g->point[i];
         v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
-        tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
+        tl_f8 gap = gap_now(&moved, c, ja, jb);
         tl_m8 apart = tl_f8_gt(gap, zero);
         tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_load(c->mass);
         tl_f8 old = tl_f8_load(c->impulse), now = old;
@@ -183,7 +203,6 @@ static void relax_contacts(const tl_step *step, uint32_t first, uint32_t last) {
 
 /* One Gauss-Seidel pass over displacements. */
 static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
-    const float *moves = tl_row_moved(step->h)->f;
     float *pushes = tl_row_push(step->h)->f;
     tl_f8 zero = tl_f8_zero(), share = tl_f8_set1(PUSH_SHARE), slop = tl_f8_set1(PUSH_DEPTH);
     tl_f8 most = tl_f8_set1(step->h->settings.push_speed * step->sub);
@@ -193,18 +212,13 @@ static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
             continue;
         }
         pair_velocity p;
-        tl_f8 r[8];
         load_pair(pushes, g->a, g->b, &p);
         v8 n = v8_load(g->normal[0]);
-        tl_f8_load_rows(moves, g->a, r);
-        v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
-        tl_f8_load_rows(moves, g->b, r);
-        v8 db = v8_of(r[3], r[4], r[5]);
-        tl_f8 way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
+        pair_motion moved = load_motion(step, g, n);
         for (uint32_t i = 0; i < g->points; i++) {
             const tl_contact_lane_point *c = &g->point[i];
             v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
-            tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
+            tl_f8 gap = gap_now(&moved, c, ja, jb);
             gap = tl_f8_add(gap, row_speed(&p, n, ja, jb));
             tl_f8 depth = tl_f8_max(tl_f8_sub(tl_f8_neg(gap), slop), zero);
             apply_row(&p, n, ja, jb, tl_f8_mul(tl_f8_load(c->mass), tl_f8_min(tl_f8_mul(depth, share), most)));
@@ -231,19 +245,9 @@ static void warm_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     }
 }
 
-/* m/s^2: how the forces draw b towards a. */
-static v8 closing_of(const float *forces, const tl_contact_group *g) {
-    tl_f8 r[8];
-    tl_f8_load_rows(forces, g->a, r);
-    v8 a = v8_of(r[0], r[1], r[2]);
-    tl_f8_load_rows(forces, g->b, r);
-    return v8_sub(a, v8_of(r[0], r[1], r[2]));
-}
-
 /* Newton's law of restitution, once a step: what met faster than the threshold leaves at its share of that speed, less
  * what it would have lost on the way to where it stopped short of the surface. */
 static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) {
-    const float *moves = tl_row_moved(step->h)->f;
     tl_f8 zero = tl_f8_zero(), threshold = tl_f8_set1(step->h->settings.restitution_speed);
     for (uint32_t i = first; i < last; i++) {
         tl_contact_group *g = &tl_group_pool(step->h)[i];
@@ -253,20 +257,16 @@ static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) 
         pair_velocity p;
         load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
         v8 n = v8_load(g->normal[0]);
-        tl_f8 restitution = tl_f8_load(g->restitution), r[8];
-        tl_f8 closing = v8_dot(n, closing_of(tl_row_force(step->h)->f, g));
-        tl_f8_load_rows(moves, g->a, r);
-        v8 xa = v8_of(r[0], r[1], r[2]), da = v8_of(r[3], r[4], r[5]);
-        tl_f8_load_rows(moves, g->b, r);
-        v8 db = v8_of(r[3], r[4], r[5]);
-        tl_f8 way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
+        tl_f8 restitution = tl_f8_load(g->restitution);
+        tl_f8 closing = v8_dot(n, closing_of(step, g));
+        pair_motion moved = load_motion(step, g, n);
         for (uint32_t k = 0; k < g->points; k++) {
             tl_contact_lane_point *c = &g->point[k];
             v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
             tl_f8 approach = tl_f8_load(c->approach), old = tl_f8_load(c->impulse);
             tl_m8 bounces = tl_m8_and(tl_f8_gt(tl_f8_load(c->peak), zero), tl_f8_gt(approach, threshold));
             bounces = tl_m8_and(bounces, tl_f8_gt(restitution, zero));
-            tl_f8 gap = tl_f8_add(tl_f8_add(tl_f8_load(c->gap), way), tl_f8_sub(v8_dot(jb, db), v8_dot(ja, da)));
+            tl_f8 gap = gap_now(&moved, c, ja, jb);
             tl_f8 leave = tl_f8_mul(restitution, approach), lost = tl_f8_mul(closing, tl_f8_max(gap, zero));
             leave = tl_f8_sub(tl_f8_mul(leave, leave), tl_f8_add(lost, lost));
             tl_f8 excess = tl_f8_sub(row_speed(&p, n, ja, jb), tl_f8_sqrt(tl_f8_max(leave, zero)));

@@ -135,15 +135,19 @@ void tl_contact_end(tl_header *h, uint32_t contact, uint32_t clear) {
 static int is_of_shape(const tl_contact_meta *m, uint32_t shape) { return m->shape_a == shape || m->shape_b == shape; }
 
 uint32_t tl_contacts_of(const tl_header *h, uint32_t body, uint32_t shape) {
-    uint32_t *out = tl_contact_order(h), count = 0;
+    uint64_t *keys = tl_new_touch(h);
+    uint32_t count = 0;
     const tl_pair_link *links = tl_pair_links(h);
     for (uint32_t l = tl_body_links(h)[body].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
         uint32_t c = tl_pairs(h)[l >> 1].contact;
         if (c != TL_NONE && (shape == TL_NONE || is_of_shape(&tl_contacts(h)[c], shape))) {
-            out[count++] = c;
+            keys[count++] = c;
         }
     }
-    tl_sort_words(out, count);
+    tl_sort_keys(keys, count);
+    for (uint32_t k = 0; k < count; k++) {
+        tl_contact_order(h)[k] = (uint32_t)keys[k];
+    }
     return count;
 }
 

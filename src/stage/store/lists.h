@@ -49,5 +49,9 @@ void tl_lists_drop_sleeping(tl_header *h);
 static inline int tl_body_is_dynamic(const tl_header *h, uint32_t body) {
     return tl_body_type(&tl_bodies(h)[body]) == TALUS_DYNAMIC;
 }
+/* Whether a body neither moves nor can be moved: the points of its contacts are then kept in the world. */
+static inline int tl_body_is_fixed(const tl_header *h, uint32_t body) {
+    return !tl_body_row(h)[body] && !tl_body_is_dynamic(h, body);
+}
 
 #endif

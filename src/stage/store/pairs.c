@@ -111,12 +111,7 @@ void tl_pairs_drop_sleeping(tl_header *h) {
 uint32_t tl_pair_make_for_contact(tl_header *h, uint32_t shape_a, uint32_t shape_b) {
     uint32_t i = tl_pool_top(&h->pairs, h->capacity[TL_COUNT_PAIR]);
     tl_pair *p = &tl_pairs(h)[i];
-    if (i == h->pairs.free) {
-        h->pairs.free = tl_pair_links(h)[i].next[0];
-    } else {
-        h->pairs.high++;
-    }
-    h->pairs.used++;
+    tl_pool_take(&h->pairs, i, tl_pair_links(h)[i].next[0]);
     p->shape_a = shape_a, p->shape_b = shape_b;
     p->body_a = tl_shapes(h)[shape_a].body, p->body_b = tl_shapes(h)[shape_b].body;
     p->contact = p->awake_index = TL_NONE;
@@ -131,12 +126,13 @@ uint32_t tl_pair_make_for_contact(tl_header *h, uint32_t shape_a, uint32_t shape
     return i;
 }
 
-static int has_room_apart(const tl_header *h) {
-    return h->pairs.used - h->contacts.used < TL_APART_PER_CONTACT * h->capacity[TL_COUNT_CONTACT];
+/* Room for pairs that are apart, less than 0 when there is one too many. */
+static int64_t room_apart(const tl_header *h) {
+    return (int64_t)TL_APART_PER_CONTACT * h->capacity[TL_COUNT_CONTACT] - (h->pairs.used - h->contacts.used);
 }
 
 uint32_t tl_pair_make(tl_header *h, uint32_t shape_a, uint32_t shape_b) {
-    return has_room_apart(h) ? tl_pair_make_for_contact(h, shape_a, shape_b) : TL_NONE;
+    return room_apart(h) > 0 ? tl_pair_make_for_contact(h, shape_a, shape_b) : TL_NONE;
 }
 
 void tl_pair_end(tl_header *h, uint32_t pair) {
@@ -158,7 +154,7 @@ void tl_pair_leave_contact(tl_header *h, uint32_t pair, uint32_t clear, const tl
     p->motion = tl_body_motion(h)[p->body_a] + tl_body_motion(h)[p->body_b];
     p->clear = clear;
     tl_pair_hints(h)[pair] = *hint;
-    if (h->pairs.used - h->contacts.used > TL_APART_PER_CONTACT * h->capacity[TL_COUNT_CONTACT]) {
+    if (room_apart(h) < 0) {
         tl_shape_mark_moved(h, p->shape_a);
         tl_pair_end(h, pair);
     }

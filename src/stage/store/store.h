@@ -105,6 +105,17 @@ uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_
 /* A slot of a pool, or TL_NONE if `capacity` are used. `next` is the free list's link of a slot. */
 uint32_t tl_pool_top(const tl_pool *pool, uint32_t capacity);
 
+/* Takes the slot that tl_pool_top gave, `next` being its link in the free list. */
+static inline void tl_pool_take(tl_pool *pool, uint32_t i, uint32_t next) {
+    if (i == pool->free) {
+        pool->free = next;
+    } else {
+        pool->high++;
+    }
+    pool->used++;
+    pool->peak = pool->used > pool->peak ? pool->used : pool->peak;
+}
+
 /* How many rows of a column are live. */
 uint32_t tl_store_live(const tl_header *h, tl_column_id column);
 
