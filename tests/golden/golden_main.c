@@ -146,41 +146,76 @@ static void print(const char *name, uint32_t steps, uint64_t hash) {
            (unsigned long)(hash & 0xffffffffu));
 }
 
-static void run(const golden_scene *scene, talus_isa isa, const void *geometry, size_t geometry_bytes, int trace) {
-    talus_world_def def = talus_world_def_default();
+/* A world in a block of its own. */
+typedef struct own_world {
     talus_world world;
-    def.body_capacity = 256, def.shape_capacity = 512, def.joint_capacity = 128;
-    def.contact_capacity = 1536, def.event_capacity = 48;
-    def.isa = isa;
-    size_t size = talus_world_size(&def);
-    unsigned char *memory = malloc(size + TALUS_BLOCK_ALIGNMENT);
+    unsigned char *memory;
+} own_world;
+
+static unsigned char *more_memory(size_t size) {
+    unsigned char *memory = malloc(size);
     if (!memory) {
         fprintf(stderr, "no memory\n");
         exit(1);
     }
-    unsigned char *block = memory + (TALUS_BLOCK_ALIGNMENT - (uintptr_t)memory % TALUS_BLOCK_ALIGNMENT);
-    golden_check(talus_world_init(&world, &def, block, size), "init");
-    world.geometry = geometry;
-    world.geometry_bytes = geometry_bytes;
+    return memory;
+}
+
+static own_world open_world(const talus_world_def *def, const void *geometry, size_t geometry_bytes) {
+    own_world own;
+    size_t size = talus_world_size(def);
+    own.memory = more_memory(size + TALUS_BLOCK_ALIGNMENT);
+    unsigned char *block = own.memory + (TALUS_BLOCK_ALIGNMENT - (uintptr_t)own.memory % TALUS_BLOCK_ALIGNMENT);
+    golden_check(talus_world_init(&own.world, def, block, size), "init");
+    own.world.geometry = geometry;
+    own.world.geometry_bytes = geometry_bytes;
+    return own;
+}
+
+/* Goes on in another block from a snapshot, whose bytes must be the same everywhere too. */
+static uint64_t move_house(own_world *own, const talus_world_def *def, uint64_t hash) {
+    size_t most = talus_world_save_size(&own->world), written = 0;
+    unsigned char *bytes = more_memory(most);
+    golden_check(talus_world_save(&own->world, bytes, most, &written), "save");
+    for (size_t i = 0; i < written; i++) {
+        hash = fold(hash, bytes[i]);
+    }
+    own_world other = open_world(def, own->world.geometry, own->world.geometry_bytes);
+    golden_check(talus_world_restore(&other.world, bytes, written), "restore");
+    free(own->memory);
+    free(bytes);
+    *own = other;
+    return hash;
+}
+
+static void run(const golden_scene *scene, talus_isa isa, const void *geometry, size_t geometry_bytes, int trace) {
+    talus_world_def def = talus_world_def_default();
+    def.body_capacity = 256, def.shape_capacity = 512, def.joint_capacity = 128;
+    def.contact_capacity = 1536, def.event_capacity = 48;
+    def.isa = isa;
+    own_world own = open_world(&def, geometry, geometry_bytes);
     golden_seed(20250101u);
-    scene->build(&world);
+    scene->build(&own.world);
     uint64_t hash = 0;
     for (uint32_t i = 0; i < scene->steps; i++) {
-        if (scene->each) {
-            scene->each(&world, i);
+        if (i == scene->steps / 2u) {
+            hash = move_house(&own, &def, hash);
         }
-        golden_check(talus_world_step(&world, 1.0f / 60.0f, NULL, NULL), "step");
-        hash = fold_events(hash, &world);
+        if (scene->each) {
+            scene->each(&own.world, i);
+        }
+        golden_check(talus_world_step(&own.world, 1.0f / 60.0f, NULL, NULL), "step");
+        hash = fold_events(hash, &own.world);
         if (trace) {
-            print(scene->name, i + 1u, talus_world_hash(&world));
+            print(scene->name, i + 1u, talus_world_hash(&own.world));
         }
     }
-    uint64_t last = talus_world_hash(&world);
+    uint64_t last = talus_world_hash(&own.world);
     hash = fold(fold(hash, (uint32_t)(last >> 32)), (uint32_t)last);
     if (!trace) {
         print(scene->name, scene->steps, hash);
     }
-    free(memory);
+    free(own.memory);
 }
 
 /* --- what needs no world ---------------------------------------------------------------------------- */
