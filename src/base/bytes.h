@@ -16,6 +16,10 @@ static inline int tl_high_byte_first(void) {
 
 /* Return where the next byte goes. */
 static inline unsigned char *tl_put_word(unsigned char *p, uint32_t w) {
+    if (!tl_high_byte_first()) { /* compilers do not always see that the four bytes are the word */
+        memcpy(p, &w, 4);
+        return p + 4;
+    }
     p[0] = (unsigned char)w, p[1] = (unsigned char)(w >> 8), p[2] = (unsigned char)(w >> 16);
     p[3] = (unsigned char)(w >> 24);
     return p + 4;

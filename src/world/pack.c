@@ -53,6 +53,23 @@ static int counts_on(const unsigned char *now, const unsigned char *before, cons
     return !other;
 }
 
+/* Whether all bytes of a run, whole blocks, are as their rows before let expect. */
+static int run_goes_on(const unsigned char *now, size_t stride, int counting) {
+    if (!counting) {
+        return memcmp(now, now - stride, RUN) == 0;
+    }
+    const unsigned char *before = now - stride, *earlier = before - stride;
+    uint32_t other = 0;
+    for (size_t at = 0; at < RUN; at += 4u) {
+        uint32_t a, b, c;
+        memcpy(&a, now + at, 4);
+        memcpy(&b, before + at, 4);
+        memcpy(&c, earlier + at, 4);
+        other |= a ^ (2u * b - c);
+    }
+    return !other;
+}
+
 /* Writes the words of a block that are not as expected; returns where it ended, p if all are. */
 static unsigned char *pack_block(unsigned char *p, const unsigned char *now, const unsigned char *before,
                                  const unsigned char *earlier, size_t bytes, size_t word) {
@@ -104,7 +121,7 @@ unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, si
         size_t run = least(RUN, bytes - at);
         unsigned char *blocks = p++;
         *blocks = 0;
-        if (!counting && at >= first && memcmp(data + at, data + at - stride, run) == 0) {
+        if (run == RUN && at >= (counting ? 2u : 1u) * first && run_goes_on(data + at, stride, counting)) {
             at += run;
             continue;
         }
@@ -123,9 +140,12 @@ size_t tl_pack_bound(size_t count, size_t stride) {
     return bytes + bytes / BLOCK + bytes / RUN + 2u + 32u;
 }
 
-static void put_mark(const tl_marks *marks, size_t row) {
-    uint32_t *m = marks->first + row * marks->stride;
-    *m = *m < marks->value ? marks->value : *m;
+static void put_marks(tl_marks *marks, size_t first, size_t last) {
+    marks->count += (uint32_t)(last - first) + 1u;
+    for (size_t row = first; marks->first && row <= last; row++) {
+        uint32_t *m = marks->first + row * marks->stride;
+        *m = *m < marks->value ? marks->value : *m;
+    }
 }
 
 /* Puts a block in its place: words of `mask` from p, the others from the row before. Returns where it ended, or null;
@@ -152,7 +172,7 @@ static const unsigned char *unpack_block(const unsigned char *p, const unsigned 
 }
 
 const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char *end, void *rows, size_t count,
-                                    size_t stride, size_t word, int counting, const tl_marks *marks) {
+                                    size_t stride, size_t word, int counting, tl_marks *marks) {
     unsigned char *data = rows;
     size_t bytes = count * stride, first = first_of(stride);
     for (size_t at = 0; at < bytes;) {
@@ -161,7 +181,8 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
         }
         uint32_t blocks = *p++;
         size_t run = least(RUN, bytes - at);
-        if (!counting && blocks == 0 && at >= first && memcmp(data + at, data + at - stride, run) == 0) {
+        if (blocks == 0 && run == RUN && at >= (counting ? 2u : 1u) * first &&
+            run_goes_on(data + at, stride, counting)) {
             at += run; /* as it should be */
             continue;
         }
@@ -179,8 +200,8 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
             if (!p) {
                 return NULL;
             }
-            for (size_t row = at / stride; marks && other && row <= (at + size - 1u) / stride; row++) {
-                put_mark(marks, row);
+            if (other) {
+                put_marks(marks, at / stride, (at + size - 1u) / stride);
             }
         }
     }
@@ -196,19 +217,22 @@ static uint64_t long_word(const unsigned char *p) {
 /* Sums of words of eight bytes and sums of those sums in four interleaved streams: Fletcher, "An arithmetic checksum
  * for serial transmissions", IEEE Trans. Communications 30(1), 1982. */
 uint64_t tl_pack_checksum(const unsigned char *p, size_t bytes) {
-    uint64_t a = 1, b = 2, c = 3, d = 4, aa = 0, bb = 0, cc = 0, dd = 0;
+    uint64_t sum[4] = {1, 2, 3, 4}, sums[4] = {0, 0, 0, 0};
     size_t at = 0;
     for (; bytes - at >= 32u; at += 32u) {
-        a += long_word(p + at), b += long_word(p + at + 8), c += long_word(p + at + 16), d += long_word(p + at + 24);
-        aa += a, bb += b, cc += c, dd += d;
+        for (unsigned k = 0; k < 4u; k++) {
+            sum[k] += long_word(p + at + 8u * k);
+            sums[k] += sum[k];
+        }
     }
     for (; at < bytes; at++) {
-        a += p[at];
-        aa += a;
+        sum[0] += p[at];
+        sums[0] += sum[0];
     }
-    const uint64_t sums[8] = {a, aa, b, bb, c, cc, d, dd};
     uint64_t mix = bytes;
-    for (unsigned k = 0; k < 8u; k++) {
+    for (unsigned k = 0; k < 4u; k++) {
+        mix = (mix ^ sum[k]) * 0x9e3779b97f4a7c15u;
+        mix ^= mix >> 29;
         mix = (mix ^ sums[k]) * 0x9e3779b97f4a7c15u;
         mix ^= mix >> 29;
     }

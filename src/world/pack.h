@@ -11,15 +11,15 @@ unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, si
 /* The most bytes that tl_pack_rows writes. */
 size_t tl_pack_bound(size_t count, size_t stride);
 
-/* Puts the rows back in place. Where a row becomes another than it was, its mark becomes `value` if it was
- * less; `marks` may be null. Returns where it ended, or null if the bytes end before. */
+/* Puts the rows back in place. Where a row becomes another than it was, its mark becomes `value` if it was less, and
+ * `count` goes up; `first` may be null. Returns where it ended, or null if the bytes end before. */
 typedef struct tl_marks {
     uint32_t *first;
     size_t stride; /* in words */
-    uint32_t value;
+    uint32_t value, count;
 } tl_marks;
 const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char *end, void *rows, size_t count,
-                                    size_t stride, size_t word, int counting, const tl_marks *marks);
+                                    size_t stride, size_t word, int counting, tl_marks *marks);
 
 /* A 64-bit checksum, not against an adversary. */
 uint64_t tl_pack_checksum(const unsigned char *p, size_t bytes);

@@ -21,6 +21,20 @@ void tl_reindex_begin(tl_header *h, uint32_t bodies) {
     }
 }
 
+void tl_reindex_part_contact(tl_header *h, uint32_t contact) {
+    tl_contact_meta *m = &tl_contacts(h)[contact];
+    if (m->flags & TL_CONTACT_ALIVE) {
+        tl_pair *p = &tl_pairs(h)[tl_contact_pair(h)[contact]];
+        p->contact = TL_NONE;
+        p->clear = 0;
+        if (m->flags & TL_CONTACT_COLORED) {
+            tl_color_give(h, m->body_a, m->body_b, m->color);
+        }
+        tl_bit_drop(tl_contact_awake(h), contact);
+    }
+    m->body_a = TL_NONE; /* says so until the contacts are tied to their pairs */
+}
+
 /* --- whether the state is one ------------------------------------------------------------------ */
 
 static int is_body(const tl_header *h, uint32_t i) {
@@ -89,18 +103,6 @@ static int are_shapes(const tl_header *h, const tl_contact_meta *m) {
 
 /* --- shapes and pairs -------------------------------------------------------------------------- */
 
-/* Whether anything became another. */
-static int any_other(const tl_header *h, uint32_t bodies, uint32_t shapes) {
-    uint32_t any = 0;
-    for (uint32_t i = 0; i < bodies; i++) {
-        any |= tl_island_parent(h)[i];
-    }
-    for (uint32_t s = 0; s < shapes; s++) {
-        any |= tl_shape_tracks(h)[s].stale;
-    }
-    return any != 0;
-}
-
 static void renew_pairs(tl_header *h) {
     const uint32_t *other = tl_island_parent(h);
     const tl_shape_track *tracks = tl_shape_tracks(h);
@@ -113,6 +115,25 @@ static void renew_pairs(tl_header *h) {
             tl_pair_end(h, i);
         } else if (other[p->body_a] | other[p->body_b]) {
             p->clear = 0;
+        }
+    }
+}
+
+/* Where bodies alone became others, pairs are kept, but not what they know. */
+static void doubt_pairs(tl_header *h) {
+    const uint32_t *other = tl_island_parent(h), *rows = tl_body_row(h);
+    const tl_pair_link *links = tl_pair_links(h);
+    uint32_t awake = 0;
+    for (uint32_t k = 0; k < h->awake_bodies; k++) {
+        awake += other[tl_awake_body(h)[k]];
+    }
+    h->pairs_doubted |= (uint32_t)(2u * awake > h->awake_bodies); /* then all of them, without a look at each */
+    for (uint32_t i = 0; i < h->bodies.high; i++) {
+        if (!other[i] || (rows[i] && h->pairs_doubted)) {
+            continue;
+        }
+        for (uint32_t l = tl_body_links(h)[i].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
+            tl_pairs(h)[l >> 1].clear = 0;
         }
     }
 }
@@ -209,31 +230,52 @@ static void take_color(tl_header *h, uint32_t a, uint32_t b, uint32_t color) {
     tl_body_colors(h)[b] |= tl_body_is_dynamic(h, b) ? bit : 0;
 }
 
+/* Gives a contact the bodies, the pair and the colour that its shapes call for; 0 if they are none. */
+static int enter_contact(tl_header *h, uint32_t c) {
+    tl_contact_meta *m = &tl_contacts(h)[c];
+    if (!are_shapes(h, m)) {
+        return 0;
+    }
+    m->body_a = tl_shapes(h)[m->shape_a].body, m->body_b = tl_shapes(h)[m->shape_b].body;
+    tl_contact_mix(h, c);
+    tl_contact_enter(h, c);
+    return 1;
+}
+
+static void color_contact(tl_header *h, uint32_t c) {
+    const tl_contact_meta *m = &tl_contacts(h)[c];
+    if (m->flags & TL_CONTACT_COLORED) {
+        take_color(h, m->body_a, m->body_b, m->color);
+    }
+}
+
+/* Where bodies, shapes and joints are those that were: only contacts that took a slot are not in their place. */
+static talus_status renew_new_contacts(tl_header *h, uint32_t count) {
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t c = tl_contact_order(h)[k];
+        if (!enter_contact(h, c)) {
+            return TALUS_BAD_BLOB;
+        }
+        color_contact(h, c);
+    }
+    return TALUS_OK;
+}
+
 static talus_status renew_contacts(tl_header *h) {
     memset(tl_contact_awake(h), 0, h->capacity[TL_COUNT_CONTACTBIT] * sizeof(uint64_t));
     for (uint32_t c = 0; c < h->contacts.high; c++) {
-        tl_contact_meta *m = &tl_contacts(h)[c];
+        const tl_contact_meta *m = &tl_contacts(h)[c];
         if (!tl_bit_has(tl_contact_alive(h), c)) {
             continue;
         }
         uint32_t hint = tl_contact_pair(h)[c];
         const tl_pair *p = &tl_pairs(h)[hint];
-        if (!(m->flags & TL_CONTACT_ALIVE) || m->color > TL_COLORS) {
-            return TALUS_BAD_BLOB;
-        }
         if (m->body_a != TL_NONE && p->shape_a == m->shape_a && p->shape_b == m->shape_b) { /* none became another */
             tl_contact_tie(h, c, hint);
-        } else {
-            if (!are_shapes(h, m)) {
-                return TALUS_BAD_BLOB;
-            }
-            m->body_a = tl_shapes(h)[m->shape_a].body, m->body_b = tl_shapes(h)[m->shape_b].body;
-            tl_contact_mix(h, c);
-            tl_contact_enter(h, c);
+        } else if (!enter_contact(h, c)) {
+            return TALUS_BAD_BLOB;
         }
-        if (m->flags & TL_CONTACT_COLORED) {
-            take_color(h, m->body_a, m->body_b, m->color);
-        }
+        color_contact(h, c);
     }
     return TALUS_OK;
 }
@@ -278,21 +320,24 @@ static void renew_joints(tl_header *h) {
 
 talus_status tl_reindex_end(tl_header *h, const tl_header *before, const tl_changes *changes) {
     uint32_t shapes = before->shapes.high > h->shapes.high ? before->shapes.high : h->shapes.high;
-    uint32_t bodies = before->bodies.high > h->bodies.high ? before->bodies.high : h->bodies.high;
-    int other = any_other(h, bodies, shapes);
-    if ((changes->metas && (!bodies_are_sound(h) || !joints_are_sound(h))) || (other && !shapes_are_sound(h))) {
+    int others = changes->metas || changes->shapes;
+    if ((changes->metas && (!bodies_are_sound(h) || !joints_are_sound(h))) || (others && !shapes_are_sound(h))) {
         return TALUS_BAD_BLOB;
     }
     if (changes->metas) {
         renew_rings(h, before->bodies.high);
     }
-    if (other) {
+    if (others) {
         renew_pairs(h);
+    } else if (changes->bodies) {
+        doubt_pairs(h);
+    }
+    if (changes->bodies || others) {
         renew_shapes(h, shapes);
     }
     if (h->pairs.used > TL_APART_PER_CONTACT * h->capacity[TL_COUNT_CONTACT]) {
         drop_pairs(h); /* not to leave the contacts without room */
-        other = 1;
+        others = 1;
     }
     int others_awake = changes->metas && !are_as_awake(h, before->bodies.high);
     if (others_awake) {
@@ -303,12 +348,14 @@ talus_status tl_reindex_end(tl_header *h, const tl_header *before, const tl_chan
         tl_body_previous(h)[i] = tl_body_pose(h)[i];
     }
     tl_ties_changed(h);
-    talus_status status = TALUS_OK;
-    if (other || changes->metas || changes->contacts) {
+    talus_status status;
+    if (others) {
         memset(tl_body_colors(h), 0, h->bodies.high * sizeof(uint64_t));
         renew_joints(h);
         renew_parted(h, before->joints.high);
         status = renew_contacts(h);
+    } else {
+        status = renew_new_contacts(h, changes->contacts);
     }
     tl_lists_of_awake(h);
     return status;

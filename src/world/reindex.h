@@ -8,19 +8,24 @@
 #define TL_BODY_OTHER 1u
 #define TL_SHAPE_OTHER 2u
 
-/* What else became another. */
+/* How much became another. A contact counts that is not what stood in its slot, and if it takes one, its number stands
+ * in contact_order and its body_a is TL_NONE. */
 typedef struct tl_changes {
-    uint32_t metas;    /* not 0: something in the columns bodies or joints */
-    uint32_t contacts; /* how many; those that took a slot have body_a TL_NONE, and the pairs of those that left it are
-                          without one */
+    uint32_t bodies, shapes;
+    uint32_t metas; /* of the columns bodies and joints */
+    uint32_t contacts;
 } tl_changes;
 
 /* Before restoring: clears the marks of bodies, of which there will be `bodies`, and notes in joint_group_pool which
  * joints keep bodies apart. */
 void tl_reindex_begin(tl_header *h, uint32_t bodies);
 
+/* What is in a contact's slot goes: its pair is left without one. */
+void tl_reindex_part_contact(tl_header *h, uint32_t contact);
+
 /* Brings the index in line with the state; `before` is the header of the state that the index was made for. What did
- * not become another keeps its place in trees and pairs. O(bodies + shapes + pairs + joints). TALUS_BAD_BLOB if the
+ * not become another keeps its place in trees and pairs. O(bodies + shapes + pairs + joints), and less
+ * when only poses, velocities and contacts did. TALUS_BAD_BLOB if the
  * state points beyond itself. */
 talus_status tl_reindex_end(tl_header *h, const tl_header *before, const tl_changes *changes);
 

@@ -238,13 +238,13 @@ static int fat_boxes_part(const tl_header *h, const tl_pair *p) {
 
 static void look_at_pairs(tl_step *step, new_touches *found) {
     tl_header *h = step->h;
-    const uint32_t *motion = tl_body_motion(h), *way = tl_body_way(h);
+    const uint32_t *motion = tl_body_motion(h), *way = tl_body_way(h), doubted = h->pairs_doubted;
     for (uint32_t k = 0; k < h->awake_pairs;) {
         uint32_t i = tl_awake_pair(h)[k];
         tl_pair *p = &tl_pairs(h)[i];
         uint32_t now = motion[p->body_a] + motion[p->body_b];
         k++;
-        if (p->contact != TL_NONE || now - p->motion + way[p->body_a] + way[p->body_b] < p->clear) {
+        if (p->contact != TL_NONE || (now - p->motion + way[p->body_a] + way[p->body_b] < p->clear && !doubted)) {
             h->counters.manifolds_kept += p->contact == TL_NONE;
             continue;
         }
@@ -261,6 +261,7 @@ static void look_at_pairs(tl_step *step, new_touches *found) {
         p->motion = now;
         p->clear = clear_of(h, p->body_a, p->body_b, gap);
     }
+    h->pairs_doubted = 0;
 }
 
 /* What there was no room to pair is looked for in the trees. */

@@ -93,6 +93,7 @@ static void clear_awake(tl_header *h, uint32_t pair) {
         list[at] = last;
         pairs[last].awake_index = at;
         pairs[pair].awake_index = TL_NONE;
+        pairs[pair].clear = h->pairs_doubted ? 0 : pairs[pair].clear;
     }
 }
 
