@@ -3,6 +3,7 @@
 #ifndef TL_KERNELS_H
 #define TL_KERNELS_H
 
+#include "stage/narrow/batch.h"
 #include "stage/store/store.h"
 
 /* What the stages of one step share. Holds pointers and so lives on the stack only. */
@@ -22,6 +23,8 @@ typedef struct tl_step {
 typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);
 
 typedef struct tl_kernels {
+    void (*place_pairs)(const tl_step *step, tl_pair_batch *batch); /* a, b, b_in_a and margin */
+    void (*collide_balls)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
     tl_kernel velocity, position, push; /* ranges of eight body rows */
     tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, bounce_contacts,
         store_contacts;                                                                         /* groups */

@@ -5,13 +5,14 @@
 #include "base/vec_lanes.h"
 
 #include "stage/motion/motion.inl"
+#include "stage/narrow/batch.inl"
 #include "stage/row/contact_rows.inl"
 #include "stage/row/joint_rows.inl"
 #include "stage/solve/contacts.inl"
 #include "stage/solve/joints.inl"
 
 const tl_kernels TL_KERNELS = {
-    velocity,      position,        push,           prepare_contacts, warm_contacts, solve_contacts, relax_contacts,
-    push_contacts, bounce_contacts, store_contacts, begin_joints,     turn_joints,   solve_joints,   relax_joints,
-    push_joints,   store_joints,
+    place_pairs,    collide_balls,  velocity,      position,        push,           prepare_contacts, warm_contacts,
+    solve_contacts, relax_contacts, push_contacts, bounce_contacts, store_contacts, begin_joints,     turn_joints,
+    solve_joints,   relax_joints,   push_joints,   store_joints,
 };

@@ -1,0 +1,252 @@
+/* Contacts: their manifolds are made anew where they moved more than the slack. */
+#include <string.h>
+
+#include "base/sort.h"
+#include "stage/broad/refit.h"
+#include "stage/narrow/batch.h"
+#include "stage/narrow/query.h"
+#include "stage/store/lists.h"
+
+/* The impulses of a manifold before it is made anew. */
+typedef struct old_points {
+    uint32_t count, id[TL_MANIFOLD_POINTS];
+    float impulse[TL_MANIFOLD_POINTS];
+} old_points;
+
+static void keep_old(const tl_contact_points *points, uint32_t count, old_points *old) {
+    old->count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        old->id[i] = points->p[i].id;
+        old->impulse[i] = points->p[i].impulse;
+    }
+}
+
+static float impulse_of(const old_points *old, uint32_t id) {
+    for (uint32_t i = 0; i < old->count; i++) {
+        if (old->id[i] == id) {
+            return old->impulse[i];
+        }
+    }
+    return 0.0f;
+}
+
+/* Puts a manifold, given in shape a's frame, into the bodies' mass frames; pa and pb are the shapes in the world. */
+static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const talus_pose *b_in_a,
+                           const talus_pose *pa, const talus_pose *pb) {
+    tl_contact_meta *meta = &tl_contacts(h)[c];
+    tl_contact_head *head = &tl_heads(h)[c];
+    tl_contact_points *points = &tl_points(h)[c];
+    old_points old;
+    talus_pose place_a = tl_body_is_fixed(h, meta->body_a) ? *pa : tl_row_pose_of(&tl_shape_place(h)[meta->shape_a]);
+    talus_pose place_b = tl_body_is_fixed(h, meta->body_b) ? *pb : tl_row_pose_of(&tl_shape_place(h)[meta->shape_b]);
+    keep_old(points, meta->count, &old);
+    for (uint32_t i = 0; i < m->count; i++) {
+        const tl_manifold_point *p = &m->point[i];
+        talus_vec3 half = tl_scale(m->normal, 0.5f * p->separation);
+        talus_vec3 a = tl_pose_point(&place_a, tl_sub(p->position, half));
+        talus_vec3 b = tl_pose_point(&place_b, tl_pose_point_back(b_in_a, tl_add(p->position, half)));
+        tl_contact_point_record *r = &points->p[i];
+        r->a[0] = a.x, r->a[1] = a.y, r->a[2] = a.z;
+        r->b[0] = b.x, r->b[1] = b.y, r->b[2] = b.z;
+        r->id = p->id;
+        r->impulse = impulse_of(&old, p->id);
+    }
+    if (m->count < old.count) {
+        memset(&points->p[m->count], 0, (old.count - m->count) * sizeof points->p[0]);
+    }
+    talus_vec3 n = tl_rotate(place_a.rotation, m->normal);
+    head->normal[0] = n.x, head->normal[1] = n.y, head->normal[2] = n.z;
+    meta->count = m->count;
+}
+
+static void kept_until_moved(tl_header *h, tl_contact_meta *meta) {
+    h->counters.manifolds_made++;
+    meta->motion = tl_body_motion(h)[meta->body_a] + tl_body_motion(h)[meta->body_b];
+    meta->flags &= ~(uint32_t)TL_CONTACT_FRESH;
+}
+
+static void end_touch(tl_header *h, uint32_t c, float gap) {
+    const tl_contact_meta *meta = &tl_contacts(h)[c];
+    uint32_t clear = tl_clear_of(h, meta->body_a, meta->body_b, gap);
+    h->counters.touches_ended++;
+    tl_event_contact_end(h, c);
+    tl_contact_end(h, c, clear);
+}
+
+/* Makes a manifold; 0 if the shapes do not touch, being *gap apart. */
+static int make_manifold(tl_step *step, uint32_t c, const tl_query *q, float *gap) {
+    tl_header *h = step->h;
+    tl_manifold m;
+    tl_collide(&q->a, &q->b, &q->b_in_a, q->margin, &tl_contact_caches(h)[c], &m);
+    *gap = m.gap;
+    if (m.count == 0) {
+        h->counters.manifolds_made++;
+        return 0;
+    }
+    store_manifold(h, c, &m, &q->b_in_a, &q->pa, &q->pb);
+    kept_until_moved(h, &tl_contacts(h)[c]);
+    return 1;
+}
+
+void tl_contact_make_manifold(tl_step *step, uint32_t c) {
+    const tl_contact_meta *meta = &tl_contacts(step->h)[c];
+    tl_query q = tl_query_of(step, meta->shape_a, meta->shape_b);
+    float gap;
+    if (!make_manifold(step, c, &q, &gap)) {
+        end_touch(step->h, c, gap);
+    }
+}
+
+void tl_contact_update(tl_step *step, uint32_t c) {
+    const tl_contact_meta *meta = &tl_contacts(step->h)[c];
+    float gap;
+    if (tl_parted_by_balls(step, meta->body_a, meta->body_b, &gap)) {
+        end_touch(step->h, c, gap);
+    } else {
+        tl_contact_make_manifold(step, c);
+    }
+}
+
+/* --- eight at a time -------------------------------------------------------------------------- */
+
+/* Those that ended, to be told of in their order: the contact and the bits of the gap. */
+typedef struct ended {
+    uint64_t *keys;
+    uint32_t count;
+} ended;
+
+static void note_ended(ended *e, uint32_t c, float gap) {
+    uint32_t bits;
+    memcpy(&bits, &gap, sizeof bits);
+    e->keys[e->count++] = (uint64_t)c << 32 | bits;
+}
+
+static tl_batch_kind kind_of(const tl_header *h, const tl_contact_meta *m) {
+    talus_shape_type a = tl_shape_geometry(h)[m->shape_a].type, b = tl_shape_geometry(h)[m->shape_b].type;
+    if (a == TALUS_SPHERE && (b == TALUS_SPHERE || b == TALUS_BOX)) {
+        return b == TALUS_SPHERE ? TL_BATCH_BALLS : TL_BATCH_BALL_BOX;
+    }
+    return a == TALUS_BOX && b == TALUS_SPHERE ? TL_BATCH_BOX_BALL : TL_BATCH_OTHER;
+}
+
+static void add_to_batch(const tl_header *h, tl_pair_batch *batch, uint32_t c) {
+    const tl_contact_meta *m = &tl_contacts(h)[c];
+    uint32_t k = batch->count++;
+    batch->contact[k] = c;
+    batch->body_a[k] = m->body_a, batch->body_b[k] = m->body_b;
+    batch->shape_a[k] = m->shape_a, batch->shape_b[k] = m->shape_b;
+    batch->senses |= (uint32_t)((m->flags & TL_CONTACT_SENSOR) != 0) << k;
+    batch->fixed_a |= (uint32_t)tl_body_is_fixed(h, m->body_a) << k;
+    batch->fixed_b |= (uint32_t)tl_body_is_fixed(h, m->body_b) << k;
+}
+
+static void store_one_points(tl_step *step, const tl_pair_batch *batch, const tl_one_points *out, ended *e) {
+    tl_header *h = step->h;
+    for (uint32_t k = 0; k < batch->count; k++) {
+        uint32_t c = batch->contact[k];
+        if (!(out->gap[k] <= out->margin[k])) {
+            h->counters.manifolds_made++;
+            note_ended(e, c, out->gap[k]);
+            continue;
+        }
+        tl_contact_point_record *r = &tl_points(h)[c].p[0];
+        float impulse = r->impulse; /* a ball's only point is the one it had */
+        memcpy(r->a, out->point[k].f, 6u * sizeof(float));
+        r->impulse = impulse;
+        memcpy(tl_heads(h)[c].normal, out->normal[k].f, 3u * sizeof(float));
+        kept_until_moved(h, &tl_contacts(h)[c]);
+    }
+}
+
+static void make_one_by_one(tl_step *step, const tl_pair_batch *batch, ended *e) {
+    tl_header *h = step->h;
+    for (uint32_t k = 0; k < batch->count; k++) {
+        tl_query q;
+        q.shape_a = batch->shape_a[k], q.shape_b = batch->shape_b[k];
+        q.body_a = batch->body_a[k], q.body_b = batch->body_b[k];
+        q.a = tl_shape_convex(h, step->geometry, q.shape_a), q.b = tl_shape_convex(h, step->geometry, q.shape_b);
+        q.pa = tl_row_pose_of(&batch->a[k]), q.pb = tl_row_pose_of(&batch->b[k]);
+        q.b_in_a = tl_row_pose_of(&batch->b_in_a[k]);
+        q.margin = batch->margin[k];
+        float gap;
+        if (!make_manifold(step, batch->contact[k], &q, &gap)) {
+            note_ended(e, batch->contact[k], gap);
+        }
+    }
+}
+
+static void run_batch(tl_step *step, tl_pair_batch *batch, ended *e) {
+    const tl_kernels *kernels = tl_kernels_of((talus_isa)step->h->isa);
+    if (batch->count == 0) {
+        return;
+    }
+    for (uint32_t k = batch->count; k < TL_LANES; k++) {
+        batch->body_a[k] = batch->body_a[0], batch->body_b[k] = batch->body_b[0];
+        batch->shape_a[k] = batch->shape_a[0], batch->shape_b[k] = batch->shape_b[0];
+    }
+    if (batch->kind == TL_BATCH_OTHER) {
+        kernels->place_pairs(step, batch);
+        make_one_by_one(step, batch, e);
+    } else {
+        tl_one_points out;
+        kernels->collide_balls(step, batch, &out);
+        store_one_points(step, batch, &out, e);
+    }
+    batch->count = 0;
+    batch->senses = batch->fixed_a = batch->fixed_b = 0;
+}
+
+/* Micrometres that a contact may move before its manifold is made anew: between half of the slack and the whole, by a
+ * hash of the contact, so that those of a pile which came to rest together do not all come due in the same step. */
+static uint32_t slack_of(uint32_t contact, const tl_contact_meta *meta, uint32_t slack) {
+    uint64_t part = contact * 0x9e3779b1u >> 24; /* of 512 */
+    return meta->flags & TL_CONTACT_SENSOR ? 0u : slack - (uint32_t)(slack * part >> 9);
+}
+
+static void update_contact(tl_step *step, tl_pair_batch *batches, uint32_t c, ended *e) {
+    tl_header *h = step->h;
+    const tl_contact_meta *meta = &tl_contacts(h)[c];
+    float gap;
+    if (tl_parted_by_balls(step, meta->body_a, meta->body_b, &gap)) {
+        note_ended(e, c, gap);
+        return;
+    }
+    tl_pair_batch *batch = &batches[kind_of(h, meta)];
+    add_to_batch(h, batch, c);
+    if (batch->count == TL_LANES) {
+        run_batch(step, batch, e);
+    }
+}
+
+void tl_contacts_update(tl_step *step) {
+    tl_header *h = step->h;
+    const uint32_t *motion = tl_body_motion(h);
+    uint32_t slack = (uint32_t)(h->settings.recycle_slack * 1e6f);
+    tl_pair_batch batches[TL_BATCH_KINDS];
+    ended e = {tl_new_touch(h), 0};
+    for (uint32_t i = 0; i < TL_BATCH_KINDS; i++) {
+        batches[i].kind = (tl_batch_kind)i;
+        batches[i].count = batches[i].senses = batches[i].fixed_a = batches[i].fixed_b = 0;
+    }
+    tl_lists_of_awake(h);
+    for (uint32_t k = 0; k < h->awake_contacts; k++) {
+        uint32_t c = tl_awake_contact(h)[k];
+        const tl_contact_meta *meta = &tl_contacts(h)[c];
+        uint32_t moved = motion[meta->body_a] + motion[meta->body_b] - meta->motion;
+        if (moved <= slack_of(c, meta, slack) && !(meta->flags & TL_CONTACT_FRESH)) {
+            h->counters.manifolds_kept++;
+        } else {
+            update_contact(step, batches, c, &e);
+        }
+    }
+    for (uint32_t i = 0; i < TL_BATCH_KINDS; i++) {
+        run_batch(step, &batches[i], &e);
+    }
+    tl_sort_keys(e.keys, e.count);
+    for (uint32_t k = 0; k < e.count; k++) {
+        float gap;
+        uint32_t bits = (uint32_t)e.keys[k];
+        memcpy(&gap, &bits, sizeof gap);
+        end_touch(h, (uint32_t)(e.keys[k] >> 32), gap);
+    }
+}
