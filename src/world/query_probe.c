@@ -14,18 +14,13 @@
 
 /* --- boxes --------------------------------------------------------------------------------------- */
 
-/* The sum of a box's extents, and its sides moved apart: where one box holds another, so do these. */
-static double extent_of(const talus_aabb *b) {
-    return ((double)b->upper.x - (double)b->lower.x) + ((double)b->upper.y - (double)b->lower.y) +
-           ((double)b->upper.z - (double)b->lower.z);
-}
-static double lower_of(float side, double extent) {
-    double x = (double)side;
-    return x - OF_PLACE * tl_d_abs(x) - OF_SIZE * extent;
-}
-static double upper_of(float side, double extent) {
-    double x = (double)side;
-    return x + OF_PLACE * tl_d_abs(x) + OF_SIZE * extent;
+/* How much larger: no less for a box that holds another one. */
+static double slack_of(const talus_aabb *b) {
+    const talus_vec3 l = b->lower, u = b->upper;
+    double place = (double)tl_max(tl_abs(l.x), tl_abs(u.x)) + (double)tl_max(tl_abs(l.y), tl_abs(u.y)) +
+                   (double)tl_max(tl_abs(l.z), tl_abs(u.z));
+    double extent = ((double)u.x - (double)l.x) + ((double)u.y - (double)l.y) + ((double)u.z - (double)l.z);
+    return OF_PLACE * place + OF_SIZE * extent;
 }
 
 /* Cuts down what part of the way lies within the slab of one axis. */
@@ -42,27 +37,28 @@ static void cut(double from, double way, double inverse, double low, double high
 /* Boxes by slabs (Kay & Kajiya, Ray tracing complex scenes, SIGGRAPH 1986), swollen by what is on its way. */
 static double bound_of_way(const tl_probe *p, const talus_aabb *b) {
     const talus_aabb *own = &p->box;
-    double enter = 0.0, leave = p->reach, e = extent_of(b);
-    cut(p->from.x, p->way.x, p->inverse.x, lower_of(b->lower.x, e) - (double)own->upper.x,
-        upper_of(b->upper.x, e) - (double)own->lower.x, &enter, &leave);
-    cut(p->from.y, p->way.y, p->inverse.y, lower_of(b->lower.y, e) - (double)own->upper.y,
-        upper_of(b->upper.y, e) - (double)own->lower.y, &enter, &leave);
-    cut(p->from.z, p->way.z, p->inverse.z, lower_of(b->lower.z, e) - (double)own->upper.z,
-        upper_of(b->upper.z, e) - (double)own->lower.z, &enter, &leave);
+    double enter = 0.0, leave = p->reach, slack = slack_of(b);
+    cut(p->from.x, p->way.x, p->inverse.x, (double)b->lower.x - slack - (double)own->upper.x,
+        (double)b->upper.x + slack - (double)own->lower.x, &enter, &leave);
+    cut(p->from.y, p->way.y, p->inverse.y, (double)b->lower.y - slack - (double)own->upper.y,
+        (double)b->upper.y + slack - (double)own->lower.y, &enter, &leave);
+    cut(p->from.z, p->way.z, p->inverse.z, (double)b->lower.z - slack - (double)own->upper.z,
+        (double)b->upper.z + slack - (double)own->lower.z, &enter, &leave);
     return enter <= leave ? enter : TL_OUT_OF_REACH;
 }
 
-static double gap(double lower, double upper, float own_lower, float own_upper) {
-    return tl_d_max(0.0, tl_d_max(lower - (double)own_upper, (double)own_lower - upper));
+static double gap(float lower, float upper, double slack, float own_lower, float own_upper) {
+    return tl_d_max(0.0,
+                    tl_d_max((double)lower - slack - (double)own_upper, (double)own_lower - ((double)upper + slack)));
 }
 
 /* By the root of floats, which is exact and so keeps order. */
 static double bound_of_distance(const tl_probe *p, const talus_aabb *b) {
     const talus_aabb *own = &p->box;
-    double e = extent_of(b);
-    double x = gap(lower_of(b->lower.x, e), upper_of(b->upper.x, e), own->lower.x, own->upper.x),
-           y = gap(lower_of(b->lower.y, e), upper_of(b->upper.y, e), own->lower.y, own->upper.y),
-           z = gap(lower_of(b->lower.z, e), upper_of(b->upper.z, e), own->lower.z, own->upper.z);
+    double slack = slack_of(b);
+    double x = gap(b->lower.x, b->upper.x, slack, own->lower.x, own->upper.x),
+           y = gap(b->lower.y, b->upper.y, slack, own->lower.y, own->upper.y),
+           z = gap(b->lower.z, b->upper.z, slack, own->lower.z, own->upper.z);
     double distance = (double)sqrtf((float)tl_d_min(x * x + y * y + z * z, MOST_FLOAT));
     return distance <= p->reach ? distance : TL_OUT_OF_REACH;
 }
@@ -71,16 +67,6 @@ static int is_on_its_way(const tl_probe *p) { return p->question == TL_ASK_RAY |
 
 double tl_probe_bound(const tl_probe *p, const talus_aabb *box) {
     return is_on_its_way(p) ? bound_of_way(p, box) : bound_of_distance(p, box);
-}
-
-int tl_probe_side(const tl_probe *p, const tl_tree_node *a, const tl_tree_node *b) {
-    tl_d3 ca = tl_d_add(tl_d_from(a->box.lower), tl_d_from(a->box.upper)),
-          cb = tl_d_add(tl_d_from(b->box.lower), tl_d_from(b->box.upper)), between = tl_d_sub(cb, ca);
-    if (is_on_its_way(p)) {
-        return tl_d_dot(p->way, between) < 0.0;
-    }
-    tl_d3 middle = tl_d_scale(tl_d_add(ca, cb), 0.5), own = tl_d_add(tl_d_from(p->box.lower), tl_d_from(p->box.upper));
-    return tl_d_dot(tl_d_sub(own, middle), between) > 0.0;
 }
 
 /* --- shapes -------------------------------------------------------------------------------------- */
@@ -244,11 +230,11 @@ static talus_aabb turned_box(const tl_convex *shape, talus_quat q, tl_d3 from, d
     double l = 1.0 / tl_d_sqrt(x * x + y * y + z * z + w * w);
     talus_pose pose = {{0.0f, 0.0f, 0.0f}, {(float)(x * l), (float)(y * l), (float)(z * l), (float)(w * l)}};
     talus_aabb box = tl_convex_aabb(shape, &pose);
-    double e = extent_of(&box) + tl_d_length(from);
-    box.lower = tl_d_round(tl_d(lower_of(box.lower.x, e) - from.x - margin, lower_of(box.lower.y, e) - from.y - margin,
-                                lower_of(box.lower.z, e) - from.z - margin));
-    box.upper = tl_d_round(tl_d(upper_of(box.upper.x, e) - from.x + margin, upper_of(box.upper.y, e) - from.y + margin,
-                                upper_of(box.upper.z, e) - from.z + margin));
+    margin += slack_of(&box) + OF_PLACE * tl_d_length(from);
+    box.lower = tl_d_round(tl_d((double)box.lower.x - from.x - margin, (double)box.lower.y - from.y - margin,
+                                (double)box.lower.z - from.z - margin));
+    box.upper = tl_d_round(tl_d((double)box.upper.x - from.x + margin, (double)box.upper.y - from.y + margin,
+                                (double)box.upper.z - from.z + margin));
     return box;
 }
 

@@ -51,8 +51,6 @@ talus_status tl_probe_box(tl_probe *p, const talus_world *world, const talus_que
 
 /* No shape within the box answers with a lesser `at`; TL_OUT_OF_REACH: none answers. */
 double tl_probe_bound(const tl_probe *p, const talus_aabb *box);
-/* Which child of a node to look at first: it depends on the two boxes alone. */
-int tl_probe_side(const tl_probe *p, const tl_tree_node *a, const tl_tree_node *b);
 /* Whether the filter lets the query see a shape. */
 int tl_probe_sees(const tl_probe *p, uint32_t shape);
 /* Whether a shape answers, and how. Answers with an `at` beyond `last` may be left out. */

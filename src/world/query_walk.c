@@ -12,6 +12,11 @@ typedef struct answers {
     int any_only;
 } answers;
 
+/* How many nodes a walk of a tree remembers; trees of a million shapes are about 40 high. */
+enum { STACK = 64 };
+
+static int is_enough(const answers *a) { return a->any_only && a->count > 0; }
+
 static int is_after(const talus_query_hit *a, const talus_query_hit *b) {
     return a->at > b->at || (a->at == b->at && a->shape.index > b->shape.index);
 }
@@ -63,50 +68,81 @@ static void ask(const tl_probe *p, uint32_t shape, answers *a) {
     }
 }
 
-/* Walks a tree from the near child to the far one. There is no stack and so no bound on the height: on the way up the
- * order of two children is worked out once more (Hapala et al., Efficient stack-less BVH traversal for ray tracing,
- * SCCG 2011). */
+static void ask_leaf(const tl_probe *p, const tl_tree_node *leaf, answers *a) {
+    uint32_t shape = leaf->child[1];
+    if (!tl_shape_tracks(tl_header_of(p->world))[shape].moved) {
+        ask(p, shape, a);
+    }
+}
+
+/* All below a node, by the parents' links: needs no stack, and does not know what is near. */
+static void walk_below(const tl_probe *p, uint32_t top, answers *a) {
+    const tl_tree_node *nodes = tl_nodes(tl_header_of(p->world));
+    uint32_t i = top;
+    for (;;) {
+        const tl_tree_node *n = &nodes[i];
+        int reached = tl_probe_bound(p, &n->box) <= a->last;
+        if (reached && n->child[0] != TL_NONE) {
+            i = n->child[0];
+            continue;
+        }
+        if (reached) {
+            ask_leaf(p, n, a);
+        }
+        while (i != top && nodes[nodes[i].parent].child[1] == i) {
+            i = nodes[i].parent;
+        }
+        if (i == top || is_enough(a)) {
+            return;
+        }
+        i = nodes[nodes[i].parent].child[1];
+    }
+}
+
+typedef struct later {
+    uint32_t node;
+    double bound;
+} later;
+
+/* Walks a tree, the nearer child first. The height of trees has no bound: what is too deep for the stack is walked as
+ * it comes. */
 static void walk(const tl_probe *p, int tree, answers *a) {
     const tl_header *h = tl_header_of(p->world);
     const tl_tree_node *nodes = tl_nodes(h);
-    const tl_shape_track *tracks = tl_shape_tracks(h);
-    uint32_t i = h->root[tree];
-    while (i != TL_NONE) {
-        const tl_tree_node *n = &nodes[i];
-        if (tl_probe_bound(p, &n->box) <= a->last) {
-            if (n->child[0] != TL_NONE) {
-                i = n->child[tl_probe_side(p, &nodes[n->child[0]], &nodes[n->child[1]])];
-                continue;
-            }
-            if (!tracks[n->child[1]].moved) {
-                ask(p, n->child[1], a);
-                if (a->any_only && a->count > 0) {
-                    return;
-                }
+    later stack[STACK];
+    uint32_t count = 0;
+    if (h->root[tree] == TL_NONE) {
+        return;
+    }
+    stack[count].node = h->root[tree];
+    stack[count++].bound = tl_probe_bound(p, &nodes[h->root[tree]].box);
+    while (count > 0 && !is_enough(a)) {
+        later l = stack[--count];
+        while (l.bound <= a->last && nodes[l.node].child[0] != TL_NONE) {
+            const uint32_t *child = nodes[l.node].child;
+            later one = {child[0], tl_probe_bound(p, &nodes[child[0]].box)};
+            later two = {child[1], tl_probe_bound(p, &nodes[child[1]].box)};
+            int second = two.bound < one.bound;
+            later far = second ? one : two;
+            l = second ? two : one;
+            if (far.bound <= a->last && count < STACK) {
+                stack[count++] = far;
+            } else if (far.bound <= a->last) {
+                walk_below(p, far.node, a);
             }
         }
-        for (;;) {
-            uint32_t parent = nodes[i].parent;
-            if (parent == TL_NONE) {
-                return;
-            }
-            const uint32_t *child = nodes[parent].child;
-            int near = tl_probe_side(p, &nodes[child[0]], &nodes[child[1]]);
-            if (child[near] == i) {
-                i = child[1 - near];
-                break;
-            }
-            i = parent;
+        if (l.bound <= a->last) {
+            ask_leaf(p, &nodes[l.node], a);
         }
     }
 }
 
 static void ask_all(const tl_probe *p, answers *a) {
     const tl_header *h = tl_header_of(p->world);
-    for (uint32_t k = 0; k < h->moved_shapes && !(a->any_only && a->count > 0); k++) {
+    for (uint32_t k = 0; k < h->moved_shapes && !is_enough(a); k++) {
         ask(p, tl_moved_shape(h)[k], a);
     }
-    for (int tree = 0; tree < 2 && !(a->any_only && a->count > 0); tree++) {
+    for (int tree = 0; tree < 2 && !is_enough(a); tree++) {
         walk(p, tree, a);
     }
 }

@@ -441,6 +441,31 @@ static void as_by_other_instructions(void **state) {
     kit_free(hull);
 }
 
+/* Balls in one another from a micrometre up, each a little larger than the one before: the tree is a chain, and higher
+ * than what a walk remembers. */
+static void as_all_of_a_high_tree(void **state) {
+    talus_world_def def = kit_small();
+    def.shape_capacity = 100;
+    talus_world world = kit_world(&def);
+    float radius = 2e-6f;
+    (void)state;
+    for (int i = 0; i < 90; i++) {
+        talus_shape_def ball = kit_ball_def(radius);
+        ball.filter.category = i & 1 ? 1u : 6u;
+        kit_shape(&world, talus_world_ground(&world), &ball);
+        radius *= 1.3f;
+    }
+    kit_steps(&world, 1);
+    const tl_header *h = tl_header_of(&world);
+    print_message("height %u\n", (unsigned)tl_nodes(h)[h->root[TL_TREE_STILL]].height);
+    assert_true(tl_nodes(h)[h->root[TL_TREE_STILL]].height > 64u);
+    query_draw d = {5u, 0, 0};
+    for (int i = 0; i < 200; i++) {
+        kit_queries(&world, &d, 1);
+    }
+    kit_end(&world);
+}
+
 /* --- casts against many moments -------------------------------------------------------------------- */
 
 /* No moment before a cast's answer has an overlap, and at the answer the gap is the tolerance. */
@@ -491,6 +516,7 @@ int main(void) {
         cmocka_unit_test(as_all_shapes),
         cmocka_unit_test(as_restored),
         cmocka_unit_test(as_by_other_instructions),
+        cmocka_unit_test(as_all_of_a_high_tree),
         cmocka_unit_test(cast_stops_in_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
