@@ -75,15 +75,14 @@ void tl_shape_leave_tree(tl_header *h, uint32_t shape) {
     }
 }
 
-/* Whether a body's motion since a shape was looked at, and that of the coming step, are within what was free then
- * whatever their direction: the cheap answer, which needs no box. */
-static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, float dt) {
+/* Whether a body's motion since a shape was looked at, and `way` more (m), are within what was free then whatever their
+ * direction: the cheap answer, which needs no box. */
+static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, float way) {
     const tl_shape_track *t = &tl_shape_tracks(h)[shape];
     if (t->stale) {
         return 0;
     }
     uint32_t moved = tl_body_motion(h)[body] - t->motion;
-    float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
     talus_vec3 far = tl_abs3(tl_row_xyz(&tl_body_pose(h)[body])); /* where boxes are rounded more coarsely */
     return (float)moved * 1e-6f + way + 1e-6f * (far.x + far.y + far.z) < t->free;
 }
@@ -140,8 +139,9 @@ void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
     }
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t body = tl_awake_body(h)[k];
+        float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
         for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
-            if (tl_shape_tracks(h)[s].moved || has_hardly_moved(h, body, s, dt)) {
+            if (tl_shape_tracks(h)[s].moved || has_hardly_moved(h, body, s, way)) {
                 continue;
             }
             talus_aabb box = tl_shape_box(h, geometry, s);
