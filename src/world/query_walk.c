@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "stage/broad/refit.h"
+
 /* The answers kept: a heap (Williams 1964) with the last in order on top, sorted at the end. */
 typedef struct answers {
     talus_query_hit *hits;
@@ -12,7 +14,7 @@ typedef struct answers {
     int any_only;
 } answers;
 
-/* How many nodes a walk of a tree remembers; trees of a million shapes are about 40 high. */
+/* How many nodes a walk of a tree remembers. */
 enum { STACK = 64 };
 
 static int is_enough(const answers *a) { return a->any_only && a->count > 0; }
@@ -137,11 +139,19 @@ static void walk(const tl_probe *p, int tree, answers *a) {
     }
 }
 
-static void ask_all(const tl_probe *p, answers *a) {
+/* What moved is in no tree, or not where the trees have it. */
+static void ask_moved(const tl_probe *p, answers *a) {
     const tl_header *h = tl_header_of(p->world);
     for (uint32_t k = 0; k < h->moved_shapes && !is_enough(a); k++) {
-        ask(p, tl_moved_shape(h)[k], a);
+        talus_aabb box = tl_shape_box(h, p->world->geometry, tl_moved_shape(h)[k]);
+        if (tl_probe_bound(p, &box) <= a->last) {
+            ask(p, tl_moved_shape(h)[k], a);
+        }
     }
+}
+
+static void ask_all(const tl_probe *p, answers *a) {
+    ask_moved(p, a);
     for (int tree = 0; tree < 2 && !is_enough(a); tree++) {
         walk(p, tree, a);
     }

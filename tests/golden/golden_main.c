@@ -329,7 +329,7 @@ int main(int argc, char **argv) {
     run_all(golden_scenes, golden_scene_count, only, isa, region, bytes);
     run_all(golden_more_scenes, golden_more_scene_count, only, isa, region, bytes);
     for (unsigned i = 0; i < golden_scene_count; i++) {
-        if (!only && strcmp(golden_scenes[i].name, "mixer") == 0) { /* it has every type of shape */
+        if (!only && strcmp(golden_scenes[i].name, "pile") == 0) { /* it has every type of shape */
             run_queries(&golden_scenes[i], isa, region, bytes);
         }
     }
