@@ -17,5 +17,6 @@
 #include "talus/types.h"
 #include "talus/version.h"
 #include "talus/world.h"
+#include "talus/world_query.h"
 
 #endif

@@ -57,6 +57,7 @@ typedef struct search {
     tl_closest near;  /* its answer, in that frame */
     tl_d3 normal;     /* its normal, in the common frame */
     double tolerance; /* m */
+    double last;      /* advancement need not find contacts after this time */
     uint32_t queries;
 } search;
 
@@ -100,7 +101,7 @@ static void by_advancement(search *s, talus_contact_time *out) {
             double speed = tl_d_dot(closing, s->normal) + turning(s, s->normal),
                    room = s->near.gap - 0.5 * s->tolerance;
             free_until = time;
-            if (!(speed * (1.0 - time) > room)) {
+            if (!(speed * (1.0 - time) > room) || time > s->last) {
                 report(s, TALUS_TIME_MISS, 1.0, out);
                 return;
             }
@@ -138,10 +139,11 @@ static void by_bisection(search *s, talus_contact_time *out) {
     report(s, TALUS_TIME_MISS, 1.0, out);
 }
 
-void tl_advance(const tl_moving *a, const tl_moving *b, float tolerance, talus_time_method method,
+void tl_advance(const tl_moving *a, const tl_moving *b, float tolerance, double last, talus_time_method method,
                 talus_feature_pair *features, talus_contact_time *out) {
     search s;
     s.a = a, s.b = b;
+    s.last = last;
     s.queries = 0u;
     s.near.features = *features;
     double size = (double)a->core.size + (double)a->core.radius + (double)b->core.size + (double)b->core.radius;

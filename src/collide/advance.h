@@ -22,8 +22,13 @@ void tl_moving_init(tl_moving *out, const tl_convex *shape, const talus_motion *
 tl_frame tl_moving_frame(const tl_moving *m, double time);
 
 /* The first time at which the gap is at most `tolerance`, or 4e-6 of the sizes if that is more: out in the common
- * frame. */
-void tl_advance(const tl_moving *a, const tl_moving *b, float tolerance, talus_time_method method,
+ * frame. Advancement may tell a contact after `last` as a miss; until then the answer has the same bits whatever `last`
+ * is. */
+void tl_advance(const tl_moving *a, const tl_moving *b, float tolerance, double last, talus_time_method method,
                 talus_feature_pair *features, talus_contact_time *out);
+
+/* What talus_time_of_contact answers to a motion, and to a tolerance. */
+talus_status tl_motion_check(const talus_motion *motion);
+talus_status tl_tolerance_check(float tolerance);
 
 #endif

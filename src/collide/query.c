@@ -38,7 +38,7 @@ static talus_status check_pose(const talus_pose *p) {
     return turned && within(p->position) ? TALUS_OK : TALUS_BAD_ARGUMENT;
 }
 
-static talus_status check_motion(const talus_motion *m) {
+talus_status tl_motion_check(const talus_motion *m) {
     talus_status status = m ? check_pose(&m->pose) : TALUS_BAD_ARGUMENT;
     if (status != TALUS_OK) {
         return status;
@@ -48,6 +48,10 @@ static talus_status check_motion(const talus_motion *m) {
     }
     return within(m->center) && within(m->translation) && tl_length(m->rotation) <= PI_AND_A_BIT ? TALUS_OK
                                                                                                  : TALUS_BAD_ARGUMENT;
+}
+
+talus_status tl_tolerance_check(float tolerance) {
+    return !tl_is_finite(tolerance) ? TALUS_NOT_FINITE : tolerance > 0.0f ? TALUS_OK : TALUS_BAD_ARGUMENT;
 }
 
 /* Two shapes where they stand. */
@@ -232,21 +236,21 @@ talus_status talus_time_of_contact(const talus_convex *a, const talus_motion *mo
     if (!a || !b || !out || (unsigned)method >= TALUS_TIME_METHOD_COUNT) {
         return TALUS_BAD_ARGUMENT;
     }
-    talus_status status = check_motion(motion_a);
+    talus_status status = tl_motion_check(motion_a);
     if (status == TALUS_OK) {
-        status = check_motion(motion_b);
+        status = tl_motion_check(motion_b);
     }
-    if (status == TALUS_OK && !tl_is_finite(tolerance)) {
-        status = TALUS_NOT_FINITE;
+    if (status == TALUS_OK) {
+        status = tl_tolerance_check(tolerance);
     }
-    if (status != TALUS_OK || !(tolerance > 0.0f)) {
-        return status != TALUS_OK ? status : TALUS_BAD_ARGUMENT;
+    if (status != TALUS_OK) {
+        return status;
     }
     tl_convex shape_a = inner(a), shape_b = inner(b);
     tl_moving moving_a, moving_b;
     talus_feature_pair cold = {0u, 0u};
     tl_moving_init(&moving_a, &shape_a, motion_a);
     tl_moving_init(&moving_b, &shape_b, motion_b);
-    tl_advance(&moving_a, &moving_b, tolerance, method, features ? features : &cold, out);
+    tl_advance(&moving_a, &moving_b, tolerance, 1.0, method, features ? features : &cold, out);
     return TALUS_OK;
 }

@@ -422,9 +422,10 @@ static void measure(const walk *w, tl_closest *out) {
     out->point_b = tl_d_add(q0, tl_d_scale(tl_d_sub(q1, q0), t));
     tl_d3 reach = tl_d_sub(out->point_a, w->body[0]->center), d = tl_d_sub(out->point_b, out->point_a);
     double size = (double)w->body[0]->size + (double)w->body[1]->size + tl_d_length(reach);
-    out->cores_apart = out->gap > NOTHING * size;
+    double length = tl_d_length(d); /* not the gap to the last digit: the points are rounded */
+    out->cores_apart = out->gap > NOTHING * size && length > 0.0;
     if (out->cores_apart) {
-        out->normal = tl_d_scale(d, 1.0 / out->gap);
+        out->normal = tl_d_scale(d, 1.0 / length);
     }
 }
 

@@ -164,9 +164,10 @@ static void renew_shapes(tl_header *h, uint32_t rows) {
                 tl_shape_mark_moved(h, s);
             }
         } else if (alive && (t->stale || tl_island_parent(h)[tl_shapes(h)[s].body])) {
-            t->stale = 1;
-            if (!(tl_bodies(h)[tl_shapes(h)[s].body].flags & TL_BODY_AWAKE)) {
-                tl_shape_mark_moved(h, s); /* refit looks at awake bodies only */
+            if (tl_bodies(h)[tl_shapes(h)[s].body].flags & TL_BODY_AWAKE) {
+                tl_shape_mark_stale(h, s);
+            } else {
+                tl_shape_mark_moved(h, s);
             }
         }
     }

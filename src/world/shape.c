@@ -204,10 +204,7 @@ talus_status talus_shape_get_filter(const talus_world *world, talus_shape shape,
     uint32_t i;
     talus_status status = out ? tl_find_shape(world, shape, &i) : TALUS_BAD_ARGUMENT;
     if (status == TALUS_OK) {
-        const tl_header *h = tl_header_of(world);
-        out->category = tl_shape_category(h)[i];
-        out->mask = tl_shape_mask(h)[i];
-        out->group = tl_shapes(h)[i].group;
+        *out = tl_shape_filter(tl_header_of(world), i);
     }
     return status;
 }

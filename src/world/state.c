@@ -371,5 +371,10 @@ talus_status tl_run_world_flip(talus_world *world, uint32_t i, talus_command *c)
         *at ^= (unsigned char)(1u << f->bit % 8u);
         return TALUS_BAD_ARGUMENT;
     }
+    for (uint32_t s = 0; s < h->shapes.high; s++) { /* it may have been where they are */
+        if (tl_shapes(h)[s].flags & TL_SHAPE_ALIVE) {
+            tl_shape_mark_moved(h, s);
+        }
+    }
     return TALUS_OK;
 }

@@ -4,6 +4,8 @@
 
 #include "talus/talus.h"
 
+#include <string.h>
+
 typedef struct golden_scene {
     const char *name;
     uint32_t steps;
@@ -24,6 +26,19 @@ extern uint32_t golden_hull[GOLDEN_HULLS];
 void golden_seed(uint32_t seed);
 uint32_t golden_next(void);
 float golden_range(float lower, float upper);
+
+static inline uint64_t golden_fold(uint64_t hash, uint32_t word) {
+    hash = (hash ^ word) * 0x100000001b3u;
+    return hash ^ (hash >> 29);
+}
+static inline uint64_t golden_fold_float(uint64_t hash, float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return golden_fold(hash, bits);
+}
+
+/* A hash of what so many rounds of random queries answer. */
+uint64_t golden_queries(const talus_world *world, uint32_t rounds);
 
 /* What every scene does; a status that is not TALUS_OK ends the program. */
 void golden_check(talus_status status, const char *what);

@@ -100,19 +100,8 @@ void golden_floor(talus_world *world) {
 
 /* --- what is hashed --------------------------------------------------------------------------------- */
 
-static uint64_t fold(uint64_t hash, uint32_t word) {
-    hash = (hash ^ word) * 0x100000001b3u;
-    return hash ^ (hash >> 29);
-}
-
-static uint64_t fold_float(uint64_t hash, float x) {
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return fold(hash, bits);
-}
-
 static uint64_t fold_shapes(uint64_t hash, talus_shape a, talus_shape b) {
-    return fold(fold(fold(fold(hash, a.index), a.generation), b.index), b.generation);
+    return golden_fold(golden_fold(golden_fold(golden_fold(hash, a.index), a.generation), b.index), b.generation);
 }
 
 static uint64_t fold_events(uint64_t hash, const talus_world *world) {
@@ -125,9 +114,11 @@ static uint64_t fold_events(uint64_t hash, const talus_world *world) {
         hash = fold_shapes(hash, e.end[i].a, e.end[i].b);
     }
     for (uint32_t i = 0; i < e.hit_count; i++) {
-        hash = fold_float(fold_shapes(hash, e.hit[i].a, e.hit[i].b), e.hit[i].speed);
-        hash = fold_float(fold_float(fold_float(hash, e.hit[i].point.x), e.hit[i].point.y), e.hit[i].point.z);
-        hash = fold_float(fold_float(fold_float(hash, e.hit[i].normal.x), e.hit[i].normal.y), e.hit[i].normal.z);
+        hash = golden_fold_float(fold_shapes(hash, e.hit[i].a, e.hit[i].b), e.hit[i].speed);
+        hash = golden_fold_float(golden_fold_float(golden_fold_float(hash, e.hit[i].point.x), e.hit[i].point.y),
+                                 e.hit[i].point.z);
+        hash = golden_fold_float(golden_fold_float(golden_fold_float(hash, e.hit[i].normal.x), e.hit[i].normal.y),
+                                 e.hit[i].normal.z);
     }
     for (uint32_t i = 0; i < e.sensor_begin_count; i++) {
         hash = fold_shapes(hash, e.sensor_begin[i].sensor, e.sensor_begin[i].visitor);
@@ -136,9 +127,9 @@ static uint64_t fold_events(uint64_t hash, const talus_world *world) {
         hash = fold_shapes(hash, e.sensor_end[i].sensor, e.sensor_end[i].visitor);
     }
     for (uint32_t i = 0; i < e.broken_count; i++) {
-        hash = fold(fold(hash, e.broken[i].joint.index), e.broken[i].joint.generation);
+        hash = golden_fold(golden_fold(hash, e.broken[i].joint.index), e.broken[i].joint.generation);
     }
-    return fold(hash, e.dropped);
+    return golden_fold(hash, e.dropped);
 }
 
 static void print(const char *name, uint32_t steps, uint64_t hash) {
@@ -178,7 +169,7 @@ static uint64_t move_house(own_world *own, const talus_world_def *def, uint64_t 
     unsigned char *bytes = more_memory(most);
     golden_check(talus_world_save(&own->world, bytes, most, &written), "save");
     for (size_t i = 0; i < written; i++) {
-        hash = fold(hash, bytes[i]);
+        hash = golden_fold(hash, bytes[i]);
     }
     own_world other = open_world(def, own->world.geometry, own->world.geometry_bytes);
     golden_check(talus_world_restore(&other.world, bytes, written), "restore");
@@ -211,10 +202,29 @@ static void run(const golden_scene *scene, talus_isa isa, const void *geometry, 
         }
     }
     uint64_t last = talus_world_hash(&own.world);
-    hash = fold(fold(hash, (uint32_t)(last >> 32)), (uint32_t)last);
+    hash = golden_fold(golden_fold(hash, (uint32_t)(last >> 32)), (uint32_t)last);
     if (!trace) {
         print(scene->name, scene->steps, hash);
     }
+    free(own.memory);
+}
+
+/* What rays, casts and the other queries answer in a scene after some steps. */
+static void run_queries(const golden_scene *scene, talus_isa isa, const void *geometry, size_t geometry_bytes) {
+    enum { STEPS = 60, ROUNDS = 300 };
+    talus_world_def def = talus_world_def_default();
+    def.body_capacity = 256, def.shape_capacity = 512, def.contact_capacity = 1536;
+    def.isa = isa;
+    own_world own = open_world(&def, geometry, geometry_bytes);
+    golden_seed(20250101u);
+    scene->build(&own.world);
+    for (uint32_t i = 0; i < STEPS; i++) {
+        if (scene->each) {
+            scene->each(&own.world, i);
+        }
+        golden_check(talus_world_step(&own.world, 1.0f / 60.0f, NULL, NULL), "step");
+    }
+    print("queries", ROUNDS, golden_queries(&own.world, ROUNDS));
     free(own.memory);
 }
 
@@ -225,8 +235,8 @@ static void run_trigonometry(void) {
     golden_seed(7u);
     for (int i = 0; i < 20000; i++) {
         float x = golden_range(-100.0f, 100.0f), y = golden_range(-100.0f, 100.0f), u = golden_range(-1.0f, 1.0f);
-        hash = fold_float(fold_float(hash, tl_sin(x)), tl_cos(x));
-        hash = fold_float(fold_float(hash, tl_atan2(y, x)), tl_acos(u));
+        hash = golden_fold_float(golden_fold_float(hash, tl_sin(x)), tl_cos(x));
+        hash = golden_fold_float(golden_fold_float(hash, tl_atan2(y, x)), tl_acos(u));
     }
     print("trigonometry", 20000, hash);
 }
@@ -238,12 +248,12 @@ static uint64_t fold_hull(uint64_t hash, const unsigned char *blob) {
     for (size_t i = 0; i < h.vertex_edge; i += 4u) {
         uint32_t word;
         memcpy(&word, blob + i, 4u);
-        hash = i == offsetof(talus_hull, checksum) ? hash : fold(hash, word);
+        hash = i == offsetof(talus_hull, checksum) ? hash : golden_fold(hash, word);
     }
     for (size_t i = h.vertex_edge; i < h.bytes; i += 2u) {
         uint16_t word;
         memcpy(&word, blob + i, 2u);
-        hash = fold(hash, word);
+        hash = golden_fold(hash, word);
     }
     return hash;
 }
@@ -318,5 +328,10 @@ int main(int argc, char **argv) {
     size_t bytes = run_hulls(region, sizeof memory - TALUS_BLOB_ALIGNMENT);
     run_all(golden_scenes, golden_scene_count, only, isa, region, bytes);
     run_all(golden_more_scenes, golden_more_scene_count, only, isa, region, bytes);
+    for (unsigned i = 0; i < golden_scene_count; i++) {
+        if (!only && strcmp(golden_scenes[i].name, "pile") == 0) { /* it has every type of shape */
+            run_queries(&golden_scenes[i], isa, region, bytes);
+        }
+    }
     return 0;
 }

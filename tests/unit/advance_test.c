@@ -80,7 +80,7 @@ static void one(talus_time_method method, const kit_pair *p, const talus_motion 
     talus_contact_time r;
     tl_moving_init(&a, p->a, ma);
     tl_moving_init(&b, p->b, mb);
-    tl_advance(&a, &b, tolerance, method, &none, &r);
+    tl_advance(&a, &b, tolerance, 1.0, method, &none, &r);
     t->queries += r.queries;
     t->most = r.queries > t->most ? r.queries : t->most;
     t->hits += r.status == TALUS_TIME_HIT;

@@ -324,10 +324,33 @@ static void extremes(void **state) {
     }
 }
 
+/* Edges of two boxes 7e-13 m apart: the difference of the points is of as many roundings as digits. */
+static void a_hairs_breadth(void **state) {
+    (void)state;
+    talus_convex c[2];
+    talus_geometry g[2];
+    talus_pose pose[2] = {
+        {{-0.894096375f, -0.894117832f, -0.894117832f}, {-0.894117832f, -0.894117832f, -0.894117832f, 3.99999952f}},
+        {{3.99998426f, 3.99999952f, 3.99999952f}, {3.99999952f, 3.99999952f, 3.99999952f, -4.0f}}};
+    memset(g, 0, sizeof g);
+    g[0].type = g[1].type = TALUS_BOX;
+    g[0].half = tl_v(3.99999952f, 3.99999952f, 3.99999952f);
+    g[1].half = tl_v(0.894117832f, 0.894117832f, 0.894117832f);
+    for (int k = 0; k < 2; ++k) {
+        assert_int_equal(talus_convex_init(&g[k], NULL, 0, &c[k]), TALUS_OK);
+    }
+    for (uint32_t i = 0; i < 24u * 24u; ++i) {
+        talus_feature_pair hint = {TL_FEATURE(TL_FEATURE_EDGE, i % 24u), TL_FEATURE(TL_FEATURE_EDGE, i / 24u)};
+        talus_separation s;
+        assert_int_equal(talus_distance(&c[0], &pose[0], &c[1], &pose[1], &hint, &s), TALUS_OK);
+        assert_true(s.distance < 4e-5f && (s.overlap || fabsf(tl_length(s.normal) - 1.0f) < 1e-6f));
+    }
+}
+
 int main(void) {
     brute_seed("query_test");
-    const struct CMUnitTest tests[] = {cmocka_unit_test(refusals), cmocka_unit_test(all_kinds),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(refusals),     cmocka_unit_test(all_kinds),
                                        cmocka_unit_test(closed_forms), cmocka_unit_test(round_motions),
-                                       cmocka_unit_test(extremes)};
+                                       cmocka_unit_test(extremes),     cmocka_unit_test(a_hairs_breadth)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

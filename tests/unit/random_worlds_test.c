@@ -1,7 +1,7 @@
 /* Worlds of random bodies, shapes, joints and calls, under capacities that are too small, stepped a hundred times:
- * whatever happens, the state stays finite, statuses are among those named, and no step takes for ever. TALUS_WORLDS:
- * how many (200); TALUS_SEED: the first one's seed. */
-#include "world_kit.h"
+ * whatever happens, the state stays finite, statuses are among those named, queries by the trees answer as the shapes
+ * do one by one, and no step takes for ever. TALUS_WORLDS: how many (200); TALUS_SEED: the first one's seed. */
+#include "world_query_kit.h"
 
 #include <stdio.h>
 
@@ -391,6 +391,10 @@ static uint64_t run(uint64_t seed, talus_isa isa, talus_isa other) {
             }
         }
         check(&s, seed, step);
+        if (step % 50 == 30) {
+            query_draw d = {(uint32_t)seed + (uint32_t)step, 0, 0};
+            kit_queries(&s.world, &d, 1);
+        }
     }
     uint64_t hash = talus_world_hash(&s.world);
     if (second) {

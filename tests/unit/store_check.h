@@ -4,7 +4,7 @@
 #define STORE_CHECK_H
 
 #include "base/bits.h"
-#include "stage/broad/tree.h"
+#include "stage/broad/refit.h"
 #include "stage/store/lists.h"
 #include "world_kit.h"
 
@@ -185,6 +185,8 @@ static inline void check_store(const talus_world *world) {
             SOUND(t->node != 0 || t->moved != 0);
             SOUND(t->node == 0 || tl_nodes(h)[t->node - 1u].child[1] == s);
             SOUND(t->moved == 0 || tl_moved_shape(h)[t->moved - 1u] == s);
+            talus_aabb box = tl_shape_box(h, world->geometry, s);
+            SOUND(t->moved != 0 || (t->stale == 0 && tl_aabb_contains(&t->fat, &box)));
         } else {
             SOUND(t->node == 0 && t->moved == 0);
         }

@@ -75,15 +75,14 @@ void tl_shape_leave_tree(tl_header *h, uint32_t shape) {
     }
 }
 
-/* Whether a body's motion since a shape was looked at, and that of the coming step, are within what was free then
- * whatever their direction: the cheap answer, which needs no box. */
-static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, float dt) {
+/* Whether a body's motion since a shape was looked at, and `way` more (m), are within what was free then whatever their
+ * direction: the cheap answer, which needs no box. */
+static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, float way) {
     const tl_shape_track *t = &tl_shape_tracks(h)[shape];
     if (t->stale) {
         return 0;
     }
     uint32_t moved = tl_body_motion(h)[body] - t->motion;
-    float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
     talus_vec3 far = tl_abs3(tl_row_xyz(&tl_body_pose(h)[body])); /* where boxes are rounded more coarsely */
     return (float)moved * 1e-6f + way + 1e-6f * (far.x + far.y + far.z) < t->free;
 }
@@ -115,26 +114,58 @@ void tl_shapes_settle(tl_header *h, uint32_t body) {
     }
 }
 
+/* Whether the fat box still holds a shape with the way of the coming step. */
+static int stays(tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
+    const tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    talus_aabb swept = swept_of(h, shape, box, dt);
+    if (!t->node || !tl_aabb_contains(&t->fat, &swept)) {
+        return 0;
+    }
+    note_looked(h, shape, free_within(h, &t->fat, box));
+    return 1;
+}
+
 void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
     h->counters.proxies_refit = 0;
-    for (uint32_t k = 0; k < h->moved_shapes; k++) {
+    for (uint32_t k = 0; k < h->moved_shapes;) {
         uint32_t shape = tl_moved_shape(h)[k];
         talus_aabb box = tl_shape_box(h, geometry, shape);
-        enter(h, shape, &box, dt);
+        if (tl_shape_tracks(h)[shape].stale && stays(h, shape, &box, dt)) {
+            tl_shape_unmark_moved(h, shape); /* the last one is at k now */
+        } else {
+            enter(h, shape, &box, dt);
+            k++;
+        }
     }
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t body = tl_awake_body(h)[k];
+        float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
         for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
-            tl_shape_track *t = &tl_shape_tracks(h)[s];
-            if (t->moved || has_hardly_moved(h, body, s, dt)) {
+            if (tl_shape_tracks(h)[s].moved || has_hardly_moved(h, body, s, way)) {
                 continue;
             }
-            talus_aabb box = tl_shape_box(h, geometry, s), swept = swept_of(h, s, &box, dt);
-            if (!tl_aabb_contains(&t->fat, &swept)) {
+            talus_aabb box = tl_shape_box(h, geometry, s);
+            if (!stays(h, s, &box, dt)) {
                 enter(h, s, &box, dt);
                 tl_shape_mark_moved(h, s);
-            } else {
+            }
+        }
+    }
+}
+
+void tl_stage_leave(tl_header *h, const void *geometry) {
+    for (uint32_t k = 0; k < h->awake_bodies; k++) {
+        uint32_t body = tl_awake_body(h)[k];
+        for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
+            const tl_shape_track *t = &tl_shape_tracks(h)[s];
+            if (t->moved || has_hardly_moved(h, body, s, 0.0f)) {
+                continue;
+            }
+            talus_aabb box = tl_shape_box(h, geometry, s);
+            if (tl_aabb_contains(&t->fat, &box)) {
                 note_looked(h, s, free_within(h, &t->fat, &box));
+            } else {
+                tl_shape_mark_moved(h, s);
             }
         }
     }
@@ -152,6 +183,18 @@ static int joined(const tl_header *h, uint32_t a, uint32_t b) {
     return 0;
 }
 
+int tl_filters_meet(const talus_filter *a, const talus_filter *b) {
+    if (a->group != 0 && a->group == b->group) {
+        return a->group > 0;
+    }
+    return (a->mask & b->category) != 0 && (b->mask & a->category) != 0;
+}
+
+talus_filter tl_shape_filter(const tl_header *h, uint32_t shape) {
+    talus_filter f = {tl_shape_category(h)[shape], tl_shape_mask(h)[shape], tl_shapes(h)[shape].group};
+    return f;
+}
+
 int tl_may_collide(const tl_header *h, uint32_t a, uint32_t b) {
     const tl_shape_meta *ma = &tl_shapes(h)[a], *mb = &tl_shapes(h)[b];
     if (ma->body == mb->body || (ma->flags & mb->flags & TL_SHAPE_SENSOR)) {
@@ -161,11 +204,8 @@ int tl_may_collide(const tl_header *h, uint32_t a, uint32_t b) {
     if (!dynamic && !((ma->flags | mb->flags) & TL_SHAPE_SENSOR)) {
         return 0;
     }
-    if (ma->group != 0 && ma->group == mb->group) {
-        if (ma->group < 0) {
-            return 0;
-        }
-    } else if (!(tl_shape_mask(h)[a] & tl_shape_category(h)[b]) || !(tl_shape_mask(h)[b] & tl_shape_category(h)[a])) {
+    talus_filter fa = tl_shape_filter(h, a), fb = tl_shape_filter(h, b);
+    if (!tl_filters_meet(&fa, &fb)) {
         return 0;
     }
     /* The ground ties many joints: ask the body that has fewer. */

@@ -177,9 +177,18 @@ void tl_pairs_end_apart(tl_header *h, uint32_t shape) {
 
 void tl_shape_mark_moved(tl_header *h, uint32_t shape) {
     tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    t->stale = 0;
     if (!t->moved) {
         tl_moved_shape(h)[h->moved_shapes++] = shape;
         t->moved = h->moved_shapes;
+    }
+}
+
+void tl_shape_mark_stale(tl_header *h, uint32_t shape) {
+    tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    if (!t->moved) {
+        tl_shape_mark_moved(h, shape);
+        t->stale = 1;
     }
 }
 
@@ -190,6 +199,6 @@ void tl_shape_unmark_moved(tl_header *h, uint32_t shape) {
         uint32_t last = tl_moved_shape(h)[--h->moved_shapes];
         tl_moved_shape(h)[at - 1u] = last;
         tracks[last].moved = at;
-        tracks[shape].moved = 0;
+        tracks[shape].moved = tracks[shape].stale = 0;
     }
 }

@@ -26,6 +26,8 @@ void tl_pairs_end_apart(tl_header *h, uint32_t shape);
 
 /* Puts a shape on the list of those that the next refit enters anew and looks for pairs of; takes it off again. */
 void tl_shape_mark_moved(tl_header *h, uint32_t shape);
+/* The same of a shape that may be as good as where it was: it is entered anew only if it left its fat box. */
+void tl_shape_mark_stale(tl_header *h, uint32_t shape);
 void tl_shape_unmark_moved(tl_header *h, uint32_t shape);
 
 #endif

@@ -67,7 +67,7 @@ typedef struct tl_shape_track {
     uint32_t moved;  /* its place in moved_shape plus one, 0 if it is not there */
     uint32_t motion; /* the body's count when the box was last looked at */
     float free;      /* m: how far it was within the fat box then, beside the speculative margin */
-    uint32_t stale;  /* neither says anything: look at the box */
+    uint32_t stale;  /* neither says anything: look at the box; it is in moved_shape until that was done */
 } tl_shape_track;
 
 typedef struct tl_material {
