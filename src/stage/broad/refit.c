@@ -49,11 +49,45 @@ static talus_aabb fattened(const tl_header *h, uint32_t shape, const talus_aabb 
     return grown(box, margin, tl_scale(tl_row_xyz(&tl_body_velocity(h)[meta->body]), FAT_STEPS * dt));
 }
 
+/* m: where boxes are rounded more coarsely. */
+static float coarseness(const tl_header *h, uint32_t body) {
+    talus_vec3 far = tl_abs3(tl_row_xyz(&tl_body_pose(h)[body]));
+    return 1e-6f * (far.x + far.y + far.z);
+}
+
+/* Micrometres that a body may still move until a shape of it has to be looked at, for that shape alone. */
+static uint32_t room_for(const tl_header *h, uint32_t body, uint32_t shape) {
+    const tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    float moved = (float)(tl_body_motion(h)[body] - t->motion) * 1e-6f;
+    float room = t->free - moved - 2.0f * coarseness(h, body); /* twice, for it moves on */
+    return t->stale || !(room > 0.0f) ? 0u : (uint32_t)(room * 0.999e6f);
+}
+
+/* body_room: the motion count up to which no shape of a body has to be looked at. */
+static void lessen_room(tl_header *h, uint32_t body, uint32_t shape) {
+    uint32_t *room = &tl_body_room(h)[body], least = tl_body_motion(h)[body] + room_for(h, body, shape);
+    *room = (int32_t)(*room - least) > 0 ? least : *room;
+}
+
+static void renew_room(tl_header *h, uint32_t body) {
+    tl_body_room(h)[body] = tl_body_motion(h)[body] + (uint32_t)(MOST_FREE * 1e6f);
+    for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
+        lessen_room(h, body, s);
+    }
+}
+
+/* Whether a body that goes `way` (micrometres) further has room for it. */
+static int has_room(const tl_header *h, uint32_t body, uint32_t way) {
+    return (int32_t)(tl_body_room(h)[body] - tl_body_motion(h)[body] - way) > 0;
+}
+
 static void note_looked(tl_header *h, uint32_t shape, float free) {
     tl_shape_track *t = &tl_shape_tracks(h)[shape];
-    t->motion = tl_body_motion(h)[tl_shapes(h)[shape].body];
+    uint32_t body = tl_shapes(h)[shape].body;
+    t->motion = tl_body_motion(h)[body];
     t->free = tl_min(free, MOST_FREE);
     t->stale = 0;
+    lessen_room(h, body, shape);
 }
 
 static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
@@ -83,8 +117,7 @@ static int has_hardly_moved(const tl_header *h, uint32_t body, uint32_t shape, f
         return 0;
     }
     uint32_t moved = tl_body_motion(h)[body] - t->motion;
-    talus_vec3 far = tl_abs3(tl_row_xyz(&tl_body_pose(h)[body])); /* where boxes are rounded more coarsely */
-    return (float)moved * 1e-6f + way + 1e-6f * (far.x + far.y + far.z) < t->free;
+    return (float)moved * 1e-6f + way + coarseness(h, body) < t->free;
 }
 
 static talus_aabb swept_of(const tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
@@ -140,6 +173,9 @@ void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t body = tl_awake_body(h)[k];
         float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * dt;
+        if (has_room(h, body, 1u + (uint32_t)tl_min(way * 1.001e6f, 1e9f))) {
+            continue;
+        }
         for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
             if (tl_shape_tracks(h)[s].moved || has_hardly_moved(h, body, s, way)) {
                 continue;
@@ -150,12 +186,16 @@ void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
                 tl_shape_mark_moved(h, s);
             }
         }
+        renew_room(h, body);
     }
 }
 
 void tl_stage_leave(tl_header *h, const void *geometry) {
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t body = tl_awake_body(h)[k];
+        if (has_room(h, body, 0)) {
+            continue;
+        }
         for (uint32_t s = tl_bodies(h)[body].first_shape; s != TL_NONE; s = tl_shapes(h)[s].next) {
             const tl_shape_track *t = &tl_shape_tracks(h)[s];
             if (t->moved || has_hardly_moved(h, body, s, 0.0f)) {
@@ -168,6 +208,7 @@ void tl_stage_leave(tl_header *h, const void *geometry) {
                 tl_shape_mark_moved(h, s);
             }
         }
+        renew_room(h, body);
     }
 }
 

@@ -29,6 +29,7 @@
     X(body_row, uint32_t, BODY, SLEEP, INDEX, 4)                                                                       \
     X(awake_body, uint32_t, BODY, SLEEP, INDEX, 4)                                                                     \
     X(body_way, uint32_t, BODY, NARROW, INDEX, 4)                                                                      \
+    X(body_room, uint32_t, BODY, REFIT, INDEX, 4)                                                                      \
     /* shapes */                                                                                                       \
     X(shape_place, tl_row8, SHAPE, COMMANDS, STATE, 4)                                                                 \
     X(shape_geometry, talus_geometry, SHAPE, COMMANDS, STATE, 4)                                                       \
