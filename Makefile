@@ -75,8 +75,8 @@ GOLDEN = $(BUILD)/golden$(EXE)
 FUZZ_SRC := $(sort $(wildcard tests/fuzz/*_fuzz.c))
 FUZZ_NAMES := $(FUZZ_SRC:tests/fuzz/%.c=%)
 # Only what a test uses of them ends up in it.
-TEST_LIBS = -Wl,--as-needed -lcmocka -lccd -lcjson $(if $(HELP_CXX),-lbox2d) -lm
-TEST_LINK = $(if $(HELP_CXX),$(CXX),$(CC))
+TEST_LIBS = -Wl,--as-needed -lcmocka -lccd -lcjson -lm
+TEST_LINK = $(CC)
 
 HAS_CJSON := $(shell printf '\#include <cjson/cJSON.h>\n' | $(CC) $(CFLAGS) -E - >/dev/null 2>&1 && echo yes)
 
@@ -167,6 +167,9 @@ $(HELP_LIB): $(HELP_OBJ)
 	$(archive)
 
 $(BUILD)/tests/unit/alloc_test$(EXE): WRAP = -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free
+
+$(BUILD)/tests/oracle/box2d_test$(EXE): TEST_LINK = $(CXX)
+$(BUILD)/tests/oracle/box2d_test$(EXE): TEST_LIBS += -lbox2d
 
 $(TEST_BIN): $(BUILD)/%$(EXE): $(BUILD)/%.o $(HELP_LIB) $(TOOLS_LIB) $(LIB)
 	@echo "  LD $@"

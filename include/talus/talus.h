@@ -7,6 +7,7 @@
 #include "talus/events.h"
 #include "talus/hull.h"
 #include "talus/joint.h"
+#include "talus/lcp.h"
 #include "talus/loop.h"
 #include "talus/profile.h"
 #include "talus/query.h"

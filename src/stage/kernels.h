@@ -16,7 +16,9 @@ typedef struct tl_step {
     float bias_rate, mass_scale, impulse_scale; /* of soft contacts */
     uint32_t rows;                              /* body rows in use, the still one included, rounded up to eight */
     int any_locks;
-    int pushes;     /* something is deep enough, or tied by joints, to be pushed */
+    int pushes;  /* something is deep enough, or tied by joints, to be pushed */
+    int bounces; /* something has restitution */
+    int first_substep;
     int first_pass; /* the first pass over the contacts in this step */
 } tl_step;
 
@@ -26,7 +28,7 @@ typedef struct tl_kernels {
     void (*place_pairs)(const tl_step *step, tl_pair_batch *batch); /* a, b, b_in_a and margin */
     void (*collide_balls)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
     tl_kernel velocity, position, push; /* ranges of eight body rows */
-    tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, bounce_contacts,
+    tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, strike_contacts,
         store_contacts;                                                                         /* groups */
     tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */
 } tl_kernels;

@@ -9,10 +9,11 @@
 #include "stage/row/contact_rows.inl"
 #include "stage/row/joint_rows.inl"
 #include "stage/solve/contacts.inl"
+#include "stage/solve/impacts.inl"
 #include "stage/solve/joints.inl"
 
 const tl_kernels TL_KERNELS = {
     place_pairs,    collide_balls,  velocity,      position,        push,           prepare_contacts, warm_contacts,
-    solve_contacts, relax_contacts, push_contacts, bounce_contacts, store_contacts, begin_joints,     turn_joints,
+    solve_contacts, relax_contacts, push_contacts, strike_contacts, store_contacts, begin_joints,     turn_joints,
     solve_joints,   relax_joints,   push_joints,   store_joints,
 };

@@ -8,6 +8,9 @@
 /* A contact in overlap is a damped spring of the set frequency, no stiffer than what the sub-steps can follow. */
 #define MOST_HERTZ_OF_SUBSTEPS 0.21f
 
+/* Over the contacts for impacts that run from body to body, a sub-step; what is then left does not bounce. */
+#define MOST_SWEEPS 16u
+
 static void set_softness(tl_step *step) {
     const tl_settings *s = &step->h->settings;
     float hertz = tl_min(s->contact_hertz, MOST_HERTZ_OF_SUBSTEPS * step->inverse_sub);
@@ -34,14 +37,36 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     h->counters.islands_slept = h->counters.islands_woken = h->counters.bodies_slept = h->counters.bodies_woken = 0;
 }
 
+/* Sweeps over the contacts until none meets fast enough to bounce. */
+static void strike(tl_step *step, const tl_kernels *k, tl_watch *w) {
+    tl_header *h = step->h;
+    for (uint32_t sweep = 0, struck = 1; struck && sweep < MOST_SWEEPS; sweep++) {
+        k->strike_contacts(step, 0, h->groups);
+        struck = 0;
+        for (uint32_t i = 0; i < h->groups; i++) {
+            struck |= tl_group_pool(h)[i].struck;
+        }
+    }
+    tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
+}
+
 static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch *w) {
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
+    if (first) {
+        k->warm_contacts(step, 0, contacts);
+        tl_watch_lap(w, TALUS_STAGE_SOLVE);
+    }
+    step->first_substep = first;
     k->velocity(step, 0, step->rows);
     tl_watch_lap(w, TALUS_STAGE_VELOCITY);
     if (first) {
         k->begin_joints(step, 0, joints);
-        k->warm_contacts(step, 0, contacts);
+    }
+    step->first_pass = first;
+    if (first && step->bounces) {
+        tl_watch_lap(w, TALUS_STAGE_SOLVE);
+        strike(step, k, w);
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->solve_joints(step, 0, joints);
@@ -60,6 +85,10 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
         k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
         k->push(step, 0, step->rows);
+    }
+    if (step->bounces) {
+        tl_watch_lap(w, TALUS_STAGE_RELAX);
+        strike(step, k, w);
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->relax_joints(step, 0, joints);
@@ -86,18 +115,15 @@ static void solve(tl_step *step, tl_watch *w) {
         pushed += tl_group_pool(h)[i].deep != 0;
     }
     step->pushes |= pushed > 0;
+    step->bounces = bouncing > 0;
     h->counters.groups_pushed = pushed;
     h->counters.groups_bouncing = bouncing;
     tl_watch_lap(w, TALUS_STAGE_ROWS);
     for (uint32_t i = 0; i < h->settings.substeps; i++) {
         run_substep(step, k, i == 0, w);
     }
-    if (bouncing) {
-        k->bounce_contacts(step, 0, h->groups);
-    }
     h->counters.restitution_skipped = !bouncing;
     h->counters.rolling_skipped = !rolling;
-    tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
     k->store_contacts(step, 0, h->groups);
     k->store_joints(step, 0, h->joint_groups);
 }

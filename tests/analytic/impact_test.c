@@ -2,8 +2,8 @@
 #include "analytic_kit.h"
 
 /* A ball dropped from h comes up to e^2 h; the top is read off speed and height. The step finds the speed at the touch
- * from the gap that is left, but a ball that will touch within the next sub-step turns back at once, so that the top is
- * up to v h_sub too high (13 mm at 3 m/s); beyond that it is half a millimetre. */
+ * from the gap that is left, but a ball that will touch within the next sub-step turns back at once: a bounce that is
+ * lower than that way (35 mm at 8 m/s) is not seen; the others come within half a millimetre of their height. */
 static void apex(void **state) {
     (void)state;
     for (int k = 0; k <= 10; k++) {
@@ -26,7 +26,8 @@ static void apex(void **state) {
                 hit |= v >= 0.0;
                 top = hit ? fmax(top, y + 0.5 * v * v / G) : 0.0;
             }
-            CLOSE(top, e * e * height, sqrt(2.0 * G * height) * SUB + 5e-4);
+            const double way = 1.0625 * sqrt(2.0 * G * height) * SUB;
+            CLOSE(top, e * e * height, (e * e * height < way ? way : 0.0) + 5e-4);
             kit_end(&world);
         }
     }
@@ -132,9 +133,8 @@ static void heavy_and_light(void **state) {
     kit_end(&world);
 }
 
-/* A row of equal balls that just touch hands the blow on. Between touching ones one pass a sub-step is
- * no shock wave, so only momentum is asked, and that energy does not grow and that none runs backwards into the next.
- */
+/* A row of equal balls that just touch hands the blow on: the last one leaves with the speed of the first, the others
+ * stand. */
 static void cradle(void **state) {
     (void)state;
     talus_world world = kit_void();
@@ -144,15 +144,9 @@ static void cradle(void **state) {
     }
     set_velocity(&world, ball[0], kit_vec(4.0f, 0.0f, 0.0f), kit_vec(0.0f, 0.0f, 0.0f));
     kit_steps(&world, 120);
-    double p = 0.0, energy = 0.0, last = -4.0;
     for (int i = 0; i < 6; i++) {
-        double v = (double)kit_velocity(&world, ball[i]).x;
-        assert_true(v > last - 1e-3);
-        last = v;
-        p += 2.0 * v, energy += v * v;
+        CLOSE(kit_velocity(&world, ball[i]).x, i == 5 ? 4.0 : 0.0, 1e-4);
     }
-    CLOSE(p, 8.0, 1e-4);
-    assert_true(energy < 16.001);
     kit_end(&world);
 }
 

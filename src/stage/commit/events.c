@@ -137,7 +137,7 @@ void tl_stage_events(tl_step *step) {
     tl_header *h = step->h;
     for (uint32_t i = 0; i < h->groups; i++) {
         const tl_contact_group *g = &tl_group_pool(h)[i];
-        if (g->bounces) {
+        if (g->heard) {
             group_events(h, g);
         }
     }

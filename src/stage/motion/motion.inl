@@ -69,7 +69,7 @@ static void velocity(const tl_step *step, uint32_t first, uint32_t last) {
         load_eight(befores + i, b);
         load_eight(forces + i, f);
         for (int k = 0; k < 6; k++) {
-            tl_f8 warm = tl_f8_sub(v[k], b[k]);
+            tl_f8 warm = step->first_substep ? b[k] : tl_f8_sub(v[k], b[k]);
             b[k] = tl_f8_mul(tl_f8_mad(v[k], h, f[k]), f[k < 3 ? 6 : 7]);
             b[k] = cut(b[k]);
             v[k] = tl_f8_add(b[k], warm);

@@ -116,9 +116,9 @@ static void fill_row(tl_step *step, uint32_t body, uint32_t row) {
     if ((locks & 7u) == 7u) {
         rv->f[6] = 0.0f;
     }
-    tl_row_before(h)[row] = *rv;
     memset(&tl_row_push(h)[row], 0, sizeof(tl_row8));
     tl_row_push(h)[row].f[6] = rv->f[6], tl_row_push(h)[row].f[7] = rv->f[7];
+    tl_row_before(h)[row] = tl_row_push(h)[row];
     memset(&tl_row_moved(h)[row], 0, sizeof(tl_row8));
     tl_row_moved(h)[row].f[6] = dynamic ? (float)locks : 0.0f;
     rf->f[0] = frame.x, rf->f[1] = frame.y, rf->f[2] = frame.z, rf->f[3] = frame.w;

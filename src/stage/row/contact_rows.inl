@@ -119,7 +119,7 @@ static v8 closing_of(const tl_step *step, const tl_contact_group *g) {
 
 /* From the speed of approach when the step began to the one at which the surfaces meet, gaining or losing what gravity
  * does over the gap: v^2 = v0^2 + 2 a s. */
-static void prepare_bounce(const tl_step *step, tl_contact_group *g, v8 n) {
+static void prepare_approach(const tl_step *step, tl_contact_group *g, v8 n) {
     tl_f8 zero = tl_f8_zero(), closing = v8_dot(n, closing_of(step, g));
     for (uint32_t p = 0; p < g->points; p++) {
         tl_f8 speed = tl_f8_load(g->point[p].approach), gap = tl_f8_max(tl_f8_load(g->point[p].gap), zero);
@@ -166,7 +166,7 @@ static void prepare_friction(const tl_step *step, tl_contact_group *g, const con
 static void prepare_materials(const tl_step *step, tl_contact_group *g) {
     const tl_contact_material *materials = tl_contact_materials(step->h);
     const tl_contact_meta *metas = tl_contacts(step->h);
-    uint32_t bounces = 0, rolls = 0;
+    uint32_t bounces = 0, rolls = 0, heard = 0;
     for (uint32_t k = 0; k < TL_LANES; k++) {
         const tl_contact_material *m = &materials[g->contact[k]];
         g->static_friction[k] = m->static_friction;
@@ -174,12 +174,15 @@ static void prepare_materials(const tl_step *step, tl_contact_group *g) {
         g->restitution[k] = m->restitution;
         g->rolling[k] = m->rolling;
         if (k < g->lanes) {
-            bounces |= m->restitution > 0.0f || (metas[g->contact[k]].flags & TL_CONTACT_EVENTS);
+            bounces |= m->restitution > 0.0f;
+            heard |= (metas[g->contact[k]].flags & TL_CONTACT_EVENTS) != 0;
             rolls |= m->rolling > 0.0f;
         }
     }
     g->bounces = bounces;
     g->rolls = rolls;
+    g->heard = heard;
+    g->struck = 0;
 }
 
 static void prepare_contacts(const tl_step *step, uint32_t first, uint32_t last) {
@@ -196,8 +199,8 @@ static void prepare_contacts(const tl_step *step, uint32_t first, uint32_t last)
         prepare_points(step, g, &c, n, &ra, &rb, &lever);
         tl_f8_store(g->lever, lever);
         prepare_friction(step, g, &c, n, ra, rb);
-        if (g->bounces) {
-            prepare_bounce(step, g, n);
+        if (g->heard) {
+            prepare_approach(step, g, n);
         }
     }
 }

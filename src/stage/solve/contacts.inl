@@ -74,23 +74,29 @@ static inline void apply_row(pair_velocity *p, v8 n, v8 ja, v8 jb, tl_f8 impulse
     apply_spin(p, ja, jb, impulse);
 }
 
-static inline void solve_tangent(tl_contact_group *g, pair_velocity *p, v8 n, tl_f8 pressure) {
-    v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
-    v8 ja1 = v8_load(g->ja1[0]), jb1 = v8_load(g->jb1[0]), ja2 = v8_load(g->ja2[0]), jb2 = v8_load(g->jb2[0]);
-    tl_f8 s1 = row_speed(p, t1, ja1, jb1), s2 = row_speed(p, t2, ja2, jb2);
+/* The impulses along the tangents that stop the speeds s1 and s2, if static friction under this pressure holds them;
+ * else that of sliding. */
+static inline void hold_or_slide(const tl_contact_group *g, tl_f8 s1, tl_f8 s2, tl_f8 old1, tl_f8 old2, tl_f8 pressure,
+                                 tl_f8 *new1, tl_f8 *new2) {
     tl_f8 k11 = tl_f8_load(g->k11), k12 = tl_f8_load(g->k12), k22 = tl_f8_load(g->k22);
-    tl_f8 old1 = tl_f8_load(g->tangent_impulse[0]), old2 = tl_f8_load(g->tangent_impulse[1]);
-    tl_f8 new1 = tl_f8_sub(old1, tl_f8_mad(tl_f8_mul(k11, s1), k12, s2));
-    tl_f8 new2 = tl_f8_sub(old2, tl_f8_mad(tl_f8_mul(k12, s1), k22, s2));
-    /* Within the static cone the impulse stays; outside it slides at the dynamic one. */
-    tl_f8 square = tl_f8_mad(tl_f8_mul(new1, new1), new2, new2);
+    tl_f8 x1 = tl_f8_sub(old1, tl_f8_mad(tl_f8_mul(k11, s1), k12, s2));
+    tl_f8 x2 = tl_f8_sub(old2, tl_f8_mad(tl_f8_mul(k12, s1), k22, s2));
+    tl_f8 square = tl_f8_mad(tl_f8_mul(x1, x1), x2, x2);
     tl_f8 hold = tl_f8_mul(tl_f8_load(g->static_friction), pressure);
     tl_f8 slide = tl_f8_mul(tl_f8_load(g->dynamic_friction), pressure);
     tl_m8 slides = tl_f8_gt(square, tl_f8_mul(hold, hold));
     tl_f8 scale = tl_f8_div(slide, tl_f8_select(slides, tl_f8_sqrt(square), tl_f8_set1(1.0f)));
     scale = tl_f8_select(slides, scale, tl_f8_set1(1.0f));
-    new1 = tl_f8_mul(new1, scale);
-    new2 = tl_f8_mul(new2, scale);
+    *new1 = tl_f8_mul(x1, scale);
+    *new2 = tl_f8_mul(x2, scale);
+}
+
+static inline void solve_tangent(tl_contact_group *g, pair_velocity *p, v8 n, tl_f8 pressure) {
+    v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
+    v8 ja1 = v8_load(g->ja1[0]), jb1 = v8_load(g->jb1[0]), ja2 = v8_load(g->ja2[0]), jb2 = v8_load(g->jb2[0]);
+    tl_f8 s1 = row_speed(p, t1, ja1, jb1), s2 = row_speed(p, t2, ja2, jb2);
+    tl_f8 old1 = tl_f8_load(g->tangent_impulse[0]), old2 = tl_f8_load(g->tangent_impulse[1]), new1, new2;
+    hold_or_slide(g, s1, s2, old1, old2, pressure, &new1, &new2);
     tl_f8_store(g->tangent_impulse[0], new1);
     tl_f8_store(g->tangent_impulse[1], new2);
     apply_row(p, t1, ja1, jb1, tl_f8_sub(new1, old1));
@@ -165,7 +171,7 @@ static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_
         now = tl_f8_sub(now, tl_f8_mul(mass, tl_f8_add(row_speed(p, n, ja, jb), bias)));
         now = tl_f8_max(now, zero);
         tl_f8_store(c->impulse, now);
-        if (g->bounces) {
+        if (g->heard) {
             tl_f8_store(c->peak, tl_f8_max(tl_f8_load(c->peak), now));
         }
         apply_row(p, n, ja, jb, tl_f8_sub(now, old));
@@ -227,12 +233,15 @@ static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     }
 }
 
-/* Applies the impulses that the last step ended with, before the first sub-step of this one. */
+/* What the impulses that the last step ended with do to the velocities of this one's first sub-step. They are summed on
+ * their own: added to a velocity one by one, equal impulses of many contacts would be rounded alike, and the error,
+ * kept for all sub-steps, would push. */
 static void warm_contacts(const tl_step *step, uint32_t first, uint32_t last) {
+    float *warm = tl_row_before(step->h)->f;
     for (uint32_t i = first; i < last; i++) {
         const tl_contact_group *g = &tl_group_pool(step->h)[i];
         pair_velocity p;
-        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        load_pair(warm, g->a, g->b, &p);
         v8 n = v8_load(g->normal[0]), t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
         apply_row(&p, t1, v8_load(g->ja1[0]), v8_load(g->jb1[0]), tl_f8_load(g->tangent_impulse[0]));
         apply_row(&p, t2, v8_load(g->ja2[0]), v8_load(g->jb2[0]), tl_f8_load(g->tangent_impulse[1]));
@@ -241,41 +250,6 @@ static void warm_contacts(const tl_step *step, uint32_t first, uint32_t last) {
             const tl_contact_lane_point *c = &g->point[k];
             apply_row(&p, n, v8_load(c->ja[0]), v8_load(c->jb[0]), tl_f8_load(c->impulse));
         }
-        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
-    }
-}
-
-/* Newton's law of restitution, once a step: what met faster than the threshold leaves at its share of that speed, less
- * what it would have lost on the way to where it stopped short of the surface. */
-static void bounce_contacts(const tl_step *step, uint32_t first, uint32_t last) {
-    tl_f8 zero = tl_f8_zero(), threshold = tl_f8_set1(step->h->settings.restitution_speed);
-    for (uint32_t i = first; i < last; i++) {
-        tl_contact_group *g = &tl_group_pool(step->h)[i];
-        if (!g->bounces) {
-            continue;
-        }
-        pair_velocity p;
-        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
-        v8 n = v8_load(g->normal[0]);
-        tl_f8 restitution = tl_f8_load(g->restitution);
-        tl_f8 closing = v8_dot(n, closing_of(step, g));
-        pair_motion moved = load_motion(step, g, n);
-        for (uint32_t k = 0; k < g->points; k++) {
-            tl_contact_lane_point *c = &g->point[k];
-            v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
-            tl_f8 approach = tl_f8_load(c->approach), old = tl_f8_load(c->impulse);
-            tl_m8 bounces = tl_m8_and(tl_f8_gt(tl_f8_load(c->peak), zero), tl_f8_gt(approach, threshold));
-            bounces = tl_m8_and(bounces, tl_f8_gt(restitution, zero));
-            tl_f8 gap = gap_now(&moved, c, ja, jb);
-            tl_f8 leave = tl_f8_mul(restitution, approach), lost = tl_f8_mul(closing, tl_f8_max(gap, zero));
-            leave = tl_f8_sub(tl_f8_mul(leave, leave), tl_f8_add(lost, lost));
-            tl_f8 excess = tl_f8_sub(row_speed(&p, n, ja, jb), tl_f8_sqrt(tl_f8_max(leave, zero)));
-            tl_f8 now = tl_f8_max(tl_f8_sub(old, tl_f8_mul(tl_f8_load(c->mass), excess)), zero);
-            now = tl_f8_select(bounces, now, old);
-            /* What bounced is off: the next step starts it from nothing. */
-            tl_f8_store(c->impulse, tl_f8_select(bounces, zero, old));
-            apply_row(&p, n, ja, jb, tl_f8_sub(now, old));
-        }
-        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        store_pair(warm, g->a, g->b, &p);
     }
 }

@@ -43,8 +43,10 @@ typedef struct tl_contact_group {
     uint32_t contact[TL_LANES];
     uint32_t lanes, points;  /* how many are in use */
     uint32_t bounces, rolls; /* whether any lane has restitution, rolling resistance */
+    uint32_t heard;          /* whether any lane has events to tell */
     uint32_t deep;           /* whether any point is deep enough to be pushed */
-    uint32_t reserved[3];
+    uint32_t struck;         /* whether any lane bounced in the last sweep */
+    uint32_t reserved;
     float normal[3][TL_LANES];  /* from a to b */
     float tangent[3][TL_LANES]; /* the second tangent is normal x tangent */
     float ja1[3][TL_LANES], jb1[3][TL_LANES], ja2[3][TL_LANES], jb2[3][TL_LANES];
