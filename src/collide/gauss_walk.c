@@ -8,6 +8,9 @@
  * whatever rounding does, and the descent is strict. Metres, in A's frame. */
 #include "collide/gauss_walk.h"
 
+#include "collide/gjk.h"
+#include "collide/vclip.h"
+
 #define PARALLEL 1e-18 /* squared sine below which two edges have no normal */
 
 void tl_gauss_look(tl_gauss_pair *pair, tl_d3 n, uint32_t ia, uint32_t ib, tl_gauss_depth *out) {
@@ -48,9 +51,26 @@ static int may_be_less(tl_d3 n, tl_d3 p, double limit) {
     return h <= 0.0 || h * h < limit * limit * tl_d_dot(n, n);
 }
 
+/* Whether no neighbour of a vertex is further along a direction, by more than rounding. */
+static int supports(const tl_polytope *p, uint32_t vertex, tl_d3 direction) {
+    uint32_t first = p->vertex_edge[vertex], e = first;
+    double here = tl_d_dot(direction, tl_polytope_vertex(p, vertex)) + 1e-12 * (double)p->size;
+    if (first == TL_NO_FEATURE) {
+        return 1;
+    }
+    do {
+        uint32_t twin = tl_hull_twin(e);
+        if (tl_d_dot(direction, tl_polytope_vertex(p, p->edges[twin].origin)) > here) {
+            return 0;
+        }
+        e = p->edges[twin].next;
+    } while (e != first);
+    return 1;
+}
+
 /* The faces around a vertex of one side, against the other side's vertex. */
 static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
-    const tl_polytope *s = side ? pair->b : pair->a;
+    const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
     uint32_t first = s->vertex_edge[side ? ib : ia], e = first;
     int better = 0;
     if (s->face_count == 0u) {
@@ -60,7 +80,8 @@ static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl
         uint32_t face = s->edges[e].face;
         tl_d3 n = tl_polytope_normal(s, face);
         n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
-        if (may_be_less(n, p, worth(best))) {
+        tl_d3 back = side ? n : tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0));
+        if (may_be_less(n, p, worth(best)) && (supports(other, side ? ia : ib, back))) {
             better |= try_direction(pair, n, ia, ib,
                                     side ? TL_FEATURE(TL_FEATURE_VERTEX, ia) : TL_FEATURE(TL_FEATURE_FACE, face),
                                     side ? TL_FEATURE(TL_FEATURE_FACE, face) : TL_FEATURE(TL_FEATURE_VERTEX, ib), best);
@@ -173,41 +194,69 @@ void tl_gauss_descend(tl_gauss_pair *pair, tl_gauss_depth *best) {
     }
 }
 
-void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_depth *out) {
+/* Of the features' faces or edges, of any length; 0 if they are not a face and a vertex or two edges. */
+static int normal_of(const tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_d3 *n) {
     const tl_polytope *a = pair->a, *b = pair->b;
-    tl_d3 n = tl_d_sub(tl_frame_point(pair->frame, b->center), a->center), u, v;
-    uint32_t ia = 0u, ib = 0u, fa = features.a, fb = features.b, at = 0u;
-    int known = tl_polytope_has(a, fa) && tl_polytope_has(b, fb);
-    if (known) {
-        (void)corner(a, fa, 0u, &at, &ia);
-        (void)corner(b, fb, 0u, &at, &ib);
-        if (TL_FEATURE_KIND(fa) == TL_FEATURE_FACE) {
-            n = tl_polytope_normal(a, TL_FEATURE_INDEX(fa));
-        } else if (TL_FEATURE_KIND(fb) == TL_FEATURE_FACE) {
-            n = tl_d_scale(tl_frame_turn(pair->frame, tl_polytope_normal(b, TL_FEATURE_INDEX(fb))), -1.0);
-        } else if (TL_FEATURE_KIND(fa) == TL_FEATURE_EDGE && TL_FEATURE_KIND(fb) == TL_FEATURE_EDGE) {
-            uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
-            u = tl_d_sub(tl_polytope_vertex(a, a->edges[e ^ 1u].origin), tl_polytope_vertex(a, ia));
-            v = tl_d_sub(tl_polytope_vertex(b, b->edges[f ^ 1u].origin), tl_polytope_vertex(b, ib));
-            tl_d3 across = tl_d_cross(u, tl_frame_turn(pair->frame, v)), outward = n;
-            if (a->face_count > 0u) {
-                outward =
-                    tl_d_add(tl_polytope_normal(a, a->edges[e].face), tl_polytope_normal(a, a->edges[e ^ 1u].face));
-            } else if (b->face_count > 0u) {
-                outward =
-                    tl_d_add(tl_polytope_normal(b, b->edges[f].face), tl_polytope_normal(b, b->edges[f ^ 1u].face));
-                outward = tl_d_scale(tl_frame_turn(pair->frame, outward), -1.0);
-            }
-            n = tl_d_scale(across, tl_d_dot(across, outward) < 0.0 ? -1.0 : 1.0);
-        }
+    if (!tl_polytope_has(a, fa) || !tl_polytope_has(b, fb)) {
+        return 0;
     }
-    double length = tl_d_length(n);
-    n = length > 1e-30 ? tl_d_scale(n, 1.0 / length) : tl_d(0.0, 1.0, 0.0);
-    if (!known) {
-        ia = tl_polytope_support(a, n, 0u, 0);
-        ib = tl_polytope_support(b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), 0u, 0);
+    uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
+    if (TL_FEATURE_KIND(fa) == TL_FEATURE_FACE) {
+        *n = tl_polytope_normal(a, e);
+        return 1;
     }
-    tl_gauss_look(pair, n, ia, ib, out);
+    if (TL_FEATURE_KIND(fb) == TL_FEATURE_FACE) {
+        *n = tl_d_scale(tl_frame_turn(pair->frame, tl_polytope_normal(b, f)), -1.0);
+        return 1;
+    }
+    if (TL_FEATURE_KIND(fa) != TL_FEATURE_EDGE || TL_FEATURE_KIND(fb) != TL_FEATURE_EDGE) {
+        return 0;
+    }
+    tl_d3 u = tl_d_sub(tl_polytope_vertex(a, a->edges[e ^ 1u].origin), tl_polytope_vertex(a, a->edges[e].origin));
+    tl_d3 v = tl_d_sub(tl_polytope_vertex(b, b->edges[f ^ 1u].origin), tl_polytope_vertex(b, b->edges[f].origin));
+    tl_d3 outward;
+    if (a->face_count > 0u) {
+        outward = tl_d_add(tl_polytope_normal(a, a->edges[e].face), tl_polytope_normal(a, a->edges[e ^ 1u].face));
+    } else if (b->face_count > 0u) {
+        outward = tl_d_add(tl_polytope_normal(b, b->edges[f].face), tl_polytope_normal(b, b->edges[f ^ 1u].face));
+        outward = tl_d_scale(tl_frame_turn(pair->frame, outward), -1.0);
+    } else {
+        return 0;
+    }
+    *n = tl_d_cross(u, tl_frame_turn(pair->frame, v));
+    *n = tl_d_scale(*n, tl_d_dot(*n, outward) < 0.0 ? -1.0 : 1.0);
+    return tl_d_dot(*n, *n) > PARALLEL * tl_d_dot(u, u) * tl_d_dot(v, v);
+}
+
+/* The way out that the expanding polytope finds: the least but for its being made of floats and of 96 points at most.
+ */
+static tl_d3 by_expansion(const tl_gauss_pair *pair) {
+    tl_core a, b;
+    tl_simplex simplex;
+    tl_gjk near;
+    tl_depth depth;
+    tl_closest_cores(pair->a, pair->b, pair->frame, &a, &b);
+    simplex.count = 0;
+    talus_vec3 guess = tl_normalize_or(b.t, tl_v(0.0f, 1.0f, 0.0f));
+    if (tl_gjk_run(&a, &b, guess, 3e38f, &simplex, &near) == TL_GJK_APART) {
+        return tl_d_from(near.normal); /* they just touch */
+    }
+    tl_epa_run(&a, &b, &simplex, &depth);
+    return tl_d_from(depth.normal);
+}
+
+void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_depth *out) {
+    tl_d3 n;
+    uint32_t ia, ib, at = 0u;
+    if (normal_of(pair, features.a, features.b, &n)) {
+        (void)corner(pair->a, features.a, 0u, &at, &ia);
+        (void)corner(pair->b, features.b, 0u, &at, &ib);
+    } else {
+        n = by_expansion(pair);
+        ia = tl_polytope_support(pair->a, n, 0u, 0);
+        ib = tl_polytope_support(pair->b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), 0u, 0);
+    }
+    tl_gauss_look(pair, tl_d_scale(n, 1.0 / tl_d_length(n)), ia, ib, out);
 }
 
 void tl_gauss_points(const tl_gauss_pair *pair, const tl_gauss_depth *d, tl_d3 *point_a, tl_d3 *point_b) {

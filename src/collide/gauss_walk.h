@@ -24,7 +24,8 @@ typedef struct tl_gauss_depth {
 void tl_gauss_look(tl_gauss_pair *pair, tl_d3 n, uint32_t ia, uint32_t ib, tl_gauss_depth *out);
 /* From any depth down to one that no neighbour of its features undercuts. */
 void tl_gauss_descend(tl_gauss_pair *pair, tl_gauss_depth *depth);
-/* A depth to start from: along the normal of the features, if they are such, else from centre to centre. */
+/* A depth to start from: along the normal of the features, if they have one, else what an expanding polytope finds:
+ * the least as a rule, O(its points) supports. */
 void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_depth *out);
 /* The surfaces' points that are `depth` apart along n, of the cores. */
 void tl_gauss_points(const tl_gauss_pair *pair, const tl_gauss_depth *depth, tl_d3 *point_a, tl_d3 *point_b);
