@@ -54,7 +54,7 @@ static int may_be_less(tl_d3 n, tl_d3 p, double limit) {
 /* Whether no neighbour of a vertex is further along a direction, by more than rounding. */
 static int supports(const tl_polytope *p, uint32_t vertex, tl_d3 direction) {
     uint32_t first = p->vertex_edge[vertex], e = first;
-    double here = tl_d_dot(direction, tl_polytope_vertex(p, vertex)) + 1e-12 * (double)p->size;
+    double here = tl_d_dot(direction, tl_polytope_vertex(p, vertex)) + 1e-6 * (double)p->size;
     if (first == TL_NO_FEATURE) {
         return 1;
     }
