@@ -11,6 +11,7 @@
 #include "collide/gjk.h"
 #include "collide/vclip.h"
 
+#define FAN 16u        /* edges of a vertex that are laid out at a time */
 #define PARALLEL 1e-18 /* squared sine below which two edges have no normal */
 
 void tl_gauss_look(tl_gauss_pair *pair, tl_d3 n, uint32_t ia, uint32_t ib, tl_gauss_depth *out) {
@@ -80,8 +81,11 @@ static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl
         uint32_t face = s->edges[e].face;
         tl_d3 n = tl_polytope_normal(s, face);
         n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
-        tl_d3 back = side ? n : tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0));
-        if (may_be_less(n, p, worth(best)) && (supports(other, side ? ia : ib, back))) {
+        if (!may_be_less(n, p, worth(best))) {
+            e = s->edges[tl_hull_twin(e)].next;
+            continue;
+        }
+        if (supports(other, side ? ia : ib, side ? n : tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)))) {
             better |= try_direction(pair, n, ia, ib,
                                     side ? TL_FEATURE(TL_FEATURE_VERTEX, ia) : TL_FEATURE(TL_FEATURE_FACE, face),
                                     side ? TL_FEATURE(TL_FEATURE_FACE, face) : TL_FEATURE(TL_FEATURE_VERTEX, ib), best);
@@ -91,36 +95,37 @@ static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl
     return better;
 }
 
-/* An edge of A as B's frame sees it: its direction and the normals on its left and right. */
-typedef struct seen_edge {
+/* An edge away from a vertex, in B's frame: its direction and the normals on its left and right. */
+typedef struct fan_edge {
+    uint32_t index;
     tl_d3 u, left, right;
-    int has_faces;
-} seen_edge;
+} fan_edge;
 
-/* The normal of an edge of A and half-edge f of B if their arcs cross, pointing from A to B. */
-static int crossing(const seen_edge *e, const tl_polytope *b, uint32_t f, tl_d3 *n) {
-    tl_d3 v = tl_d_sub(tl_polytope_vertex(b, b->edges[f ^ 1u].origin), tl_polytope_vertex(b, b->edges[f].origin));
-    double left = 0.0, right = 0.0, near_left = 0.0, near_right = 0.0;
-    tl_d3 outward = e->has_faces ? tl_d_add(e->left, e->right) : tl_d(0.0, 0.0, 0.0);
-    if (e->has_faces) {
-        near_left = tl_d_dot(e->left, v), near_right = tl_d_dot(e->right, v);
-        if (near_left * near_right > 0.0) {
-            return 0;
-        }
+static fan_edge edge_of(const tl_polytope *p, uint32_t e) {
+    fan_edge s = {e, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    s.u = tl_d_sub(tl_polytope_vertex(p, p->edges[e ^ 1u].origin), tl_polytope_vertex(p, p->edges[e].origin));
+    if (p->face_count > 0u) {
+        s.left = tl_polytope_normal(p, p->edges[e].face);
+        s.right = tl_polytope_normal(p, p->edges[e ^ 1u].face);
     }
-    if (b->face_count > 0u) {
-        tl_d3 m_left = tl_polytope_normal(b, b->edges[f].face), m_right = tl_polytope_normal(b, b->edges[f ^ 1u].face);
-        left = tl_d_dot(m_left, e->u), right = tl_d_dot(m_right, e->u);
-        /* the arcs' planes cross in two opposite places; one of them must be on both */
-        if (left * right > 0.0 || left * near_right > 0.0 || right * near_left > 0.0) {
-            return 0;
-        }
-        outward = e->has_faces ? outward : tl_d_scale(tl_d_add(m_left, m_right), -1.0);
-    }
-    *n = tl_d_cross(e->u, v);
-    if (!(tl_d_dot(*n, *n) > PARALLEL * tl_d_dot(e->u, e->u) * tl_d_dot(v, v))) {
+    return s;
+}
+
+/* The normal of an edge of A and one of B if their arcs cross, pointing from A to B. What has no faces has normals of
+ * 0, and its arc goes all around. */
+static int crossing(const fan_edge *a, const fan_edge *b, tl_d3 *n) {
+    double near_left = tl_d_dot(a->left, b->u), near_right = tl_d_dot(a->right, b->u);
+    double left = tl_d_dot(b->left, a->u), right = tl_d_dot(b->right, a->u);
+    /* The arcs' planes cross in two opposite places; one of them must be on both. One branch, for each of these by
+     * itself is a toss of a coin. */
+    if ((near_left * near_right > 0.0) | (left * right > 0.0) | (left * near_right > 0.0) | (right * near_left > 0.0)) {
         return 0;
     }
+    *n = tl_d_cross(a->u, b->u);
+    if (!(tl_d_dot(*n, *n) > PARALLEL * tl_d_dot(a->u, a->u) * tl_d_dot(b->u, b->u))) {
+        return 0;
+    }
+    tl_d3 outward = tl_d_sub(tl_d_add(a->left, a->right), tl_d_add(b->left, b->right));
     if (tl_d_dot(*n, outward) < 0.0) {
         *n = tl_d_scale(*n, -1.0);
     }
@@ -130,29 +135,33 @@ static int crossing(const seen_edge *e, const tl_polytope *b, uint32_t f, tl_d3 
 /* The crossings of the edges around a vertex of A with those around one of B. */
 static int try_edges(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
     const tl_polytope *a = pair->a, *b = pair->b;
-    uint32_t first_a = a->vertex_edge[ia], first_b = b->vertex_edge[ib], e = first_a;
-    tl_d3 at_a = tl_polytope_vertex(a, ia), n, seen = tl_frame_turn_back(pair->frame, p);
+    uint32_t first_a = a->vertex_edge[ia], first_b = b->vertex_edge[ib], e = first_a, f = first_b;
+    tl_d3 n, seen = tl_frame_turn_back(pair->frame, p);
     int better = 0;
     if (first_a == TL_NO_FEATURE || first_b == TL_NO_FEATURE) {
         return 0;
     }
     do {
-        uint32_t twin = tl_hull_twin(e), f = first_b;
-        seen_edge s = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, a->face_count > 0u};
-        s.u = tl_frame_turn_back(pair->frame, tl_d_sub(tl_polytope_vertex(a, a->edges[twin].origin), at_a));
-        if (s.has_faces) {
-            s.left = tl_frame_turn_back(pair->frame, tl_polytope_normal(a, a->edges[e].face));
-            s.right = tl_frame_turn_back(pair->frame, tl_polytope_normal(a, a->edges[twin].face));
-        }
+        fan_edge fan[FAN];
+        uint32_t count = 0u;
         do {
-            if (crossing(&s, b, f, &n) && may_be_less(n, seen, worth(best))) {
-                better |= try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, e),
-                                        TL_FEATURE(TL_FEATURE_EDGE, f), best);
-            }
+            fan[count++] = edge_of(b, f);
             f = b->edges[tl_hull_twin(f)].next;
-        } while (f != first_b);
-        e = a->edges[twin].next;
-    } while (e != first_a);
+        } while (f != first_b && count < FAN);
+        do {
+            fan_edge s = edge_of(a, e);
+            s.u = tl_frame_turn_back(pair->frame, s.u);
+            s.left = tl_frame_turn_back(pair->frame, s.left);
+            s.right = tl_frame_turn_back(pair->frame, s.right);
+            for (uint32_t k = 0; k < count; ++k) {
+                if (crossing(&s, &fan[k], &n) && may_be_less(n, seen, worth(best))) {
+                    better |= try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, e),
+                                            TL_FEATURE(TL_FEATURE_EDGE, fan[k].index), best);
+                }
+            }
+            e = a->edges[tl_hull_twin(e)].next;
+        } while (e != first_a);
+    } while (f != first_b);
     return better;
 }
 
@@ -248,7 +257,8 @@ static tl_d3 by_expansion(const tl_gauss_pair *pair) {
 void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_depth *out) {
     tl_d3 n;
     uint32_t ia, ib, at = 0u;
-    if (normal_of(pair, features.a, features.b, &n)) {
+    int known = normal_of(pair, features.a, features.b, &n);
+    if (known) {
         (void)corner(pair->a, features.a, 0u, &at, &ia);
         (void)corner(pair->b, features.b, 0u, &at, &ib);
     } else {
@@ -257,6 +267,44 @@ void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_d
         ib = tl_polytope_support(pair->b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), 0u, 0);
     }
     tl_gauss_look(pair, tl_d_scale(n, 1.0 / tl_d_length(n)), ia, ib, out);
+    if (known) {
+        /* the features support along their normal if what does is no further out than they are */
+        tl_d3 here =
+            tl_d_sub(tl_polytope_vertex(pair->a, ia), tl_frame_point(pair->frame, tl_polytope_vertex(pair->b, ib)));
+        double size = (double)pair->a->size + (double)pair->b->size;
+        if (out->value - tl_d_dot(out->n, here) <= 1e-7 * size) {
+            out->feature_a = features.a;
+            out->feature_b = features.b;
+        }
+    }
+}
+
+int tl_gauss_overlap(const tl_gauss_pair *pair, talus_feature_pair features) {
+    uint32_t kind_a = TL_FEATURE_KIND(features.a), kind_b = TL_FEATURE_KIND(features.b);
+    const tl_polytope *a = pair->a, *b = pair->b;
+    tl_gauss_depth d;
+    tl_d3 pa, pb, n;
+    if (a->face_count == 0u || b->face_count == 0u || !normal_of(pair, features.a, features.b, &n)) {
+        return 0;
+    }
+    if (kind_a == TL_FEATURE_FACE) {
+        if (kind_b != TL_FEATURE_VERTEX) {
+            return 0;
+        }
+        pb = tl_frame_point(pair->frame, tl_polytope_vertex(b, TL_FEATURE_INDEX(features.b)));
+        return tl_polytope_holds(a, TL_FEATURE_INDEX(features.a), pb);
+    }
+    if (kind_b == TL_FEATURE_FACE) {
+        pa = tl_frame_point_back(pair->frame, tl_polytope_vertex(a, TL_FEATURE_INDEX(features.a)));
+        return kind_a == TL_FEATURE_VERTEX && tl_polytope_holds(b, TL_FEATURE_INDEX(features.b), pa);
+    }
+    d.ia = d.ib = 0u;
+    d.feature_a = features.a;
+    d.feature_b = features.b;
+    tl_gauss_points(pair, &d, &pa, &pb);
+    tl_d3 middle = tl_d_scale(tl_d_add(pa, pb), 0.5);
+    return tl_polytope_holds(a, a->edges[TL_FEATURE_INDEX(features.a)].face, middle) &&
+           tl_polytope_holds(b, b->edges[TL_FEATURE_INDEX(features.b)].face, tl_frame_point_back(pair->frame, middle));
 }
 
 void tl_gauss_points(const tl_gauss_pair *pair, const tl_gauss_depth *d, tl_d3 *point_a, tl_d3 *point_b) {

@@ -247,35 +247,6 @@ static int edge_face(walk *w, int side) {
     return c.above.kind ? go(w, !side, c.above) : go(w, side, make(TL_FEATURE_VERTEX, head_of(w, side, e)));
 }
 
-/* How far p is outside of a face in the polar dual about the body's centre: 1 on its plane. */
-static double dual_height(const tl_polytope *b, uint32_t face, tl_d3 from_center) {
-    tl_d3 n = tl_polytope_normal(b, face);
-    return tl_d_dot(n, from_center) / ((double)b->d[face] - tl_d_dot(n, b->center));
-}
-
-/* The face through which p is seen from the centre: a linear function over the dual, so that climbing finds it. */
-static uint32_t face_towards(const tl_polytope *b, uint32_t face, tl_d3 p, double *height) {
-    tl_d3 d = tl_d_sub(p, b->center);
-    double best = dual_height(b, face, d);
-    for (uint32_t steps = 0; steps < b->face_count; ++steps) {
-        uint32_t first = b->face_edge[face], e = first, to = face;
-        do {
-            uint32_t f = b->edges[e ^ 1u].face;
-            double h = dual_height(b, f, d);
-            if (h > best) {
-                best = h, to = f;
-            }
-            e = b->edges[e].next;
-        } while (e != first);
-        if (to == face) {
-            break;
-        }
-        face = to;
-    }
-    *height = best;
-    return face;
-}
-
 static int vertex_face(walk *w, int side) {
     const tl_polytope *b = w->body[!side], *own = w->body[side];
     uint32_t face = w->at[!side].index, first = b->face_edge[face], k = first, i = w->at[side].index;
@@ -312,7 +283,7 @@ static int vertex_face(walk *w, int side) {
     if (height > 0.0) {
         return DONE;
     }
-    uint32_t seen = face_towards(b, face, p, &height);
+    uint32_t seen = tl_polytope_face_towards(b, face, p, &height);
     if (height <= 1.0 || seen == face) {
         return meet(w, !side, p);
     }
