@@ -111,6 +111,12 @@ static fan_edge edge_of(const tl_polytope *p, uint32_t e) {
     return s;
 }
 
+static void turn_edge(const tl_frame *frame, fan_edge *s) {
+    s->u = tl_frame_turn_back(frame, s->u);
+    s->left = tl_frame_turn_back(frame, s->left);
+    s->right = tl_frame_turn_back(frame, s->right);
+}
+
 /* The normal of an edge of A and one of B if their arcs cross, pointing from A to B. What has no faces has normals of
  * 0, and its arc goes all around. */
 static int crossing(const fan_edge *a, const fan_edge *b, tl_d3 *n) {
@@ -150,9 +156,7 @@ static int try_edges(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_d3 p, tl_
         } while (f != first_b && count < FAN);
         do {
             fan_edge s = edge_of(a, e);
-            s.u = tl_frame_turn_back(pair->frame, s.u);
-            s.left = tl_frame_turn_back(pair->frame, s.left);
-            s.right = tl_frame_turn_back(pair->frame, s.right);
+            turn_edge(pair->frame, &s);
             for (uint32_t k = 0; k < count; ++k) {
                 if (crossing(&s, &fan[k], &n) && may_be_less(n, seen, worth(best))) {
                     better |= try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, e),
@@ -189,17 +193,84 @@ static int corner(const tl_polytope *p, uint32_t feature, uint32_t turn, uint32_
     }
 }
 
-void tl_gauss_descend(tl_gauss_pair *pair, tl_gauss_depth *best) {
-    int better = 1;
-    while (better && best->value > 0.0) {
-        /* the cells that meet in this corner of the overlay; as soon as one has a deeper place, those around that */
-        uint32_t fa = best->feature_a, fb = best->feature_b, at_a = 0u, at_b = 0u, ia, ib;
-        better = 0;
-        for (uint32_t i = 0; !better && corner(pair->a, fa, i, &at_a, &ia); ++i) {
-            for (uint32_t k = 0; !better && corner(pair->b, fb, k, &at_b, &ib); ++k) {
-                better = try_cell(pair, ia, ib, best);
-            }
+/* Where the arc of A's half-edge e leads from the corners of the overlay on it, within the cell of B's vertex ib: to
+ * the faces on both sides and to the arcs of B's edges. The other way round with `side` 1. */
+static int try_arc(tl_gauss_pair *pair, int side, uint32_t e, uint32_t i, tl_gauss_depth *best) {
+    const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
+    uint32_t tail = s->edges[e].origin, ia = side ? i : tail, ib = side ? tail : i;
+    tl_d3 p = tl_d_sub(tl_polytope_vertex(pair->a, ia), tl_frame_point(pair->frame, tl_polytope_vertex(pair->b, ib)));
+    int better = 0;
+    for (uint32_t k = 0; k < 2u && s->face_count > 0u; ++k) {
+        uint32_t face = s->edges[e ^ k].face;
+        tl_d3 n = tl_polytope_normal(s, face);
+        n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
+        if (may_be_less(n, p, worth(best)) &&
+            supports(other, i, side ? n : tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)))) {
+            better |= try_direction(pair, n, ia, ib,
+                                    side ? TL_FEATURE(TL_FEATURE_VERTEX, ia) : TL_FEATURE(TL_FEATURE_FACE, face),
+                                    side ? TL_FEATURE(TL_FEATURE_FACE, face) : TL_FEATURE(TL_FEATURE_VERTEX, ib), best);
         }
+    }
+    uint32_t first = other->vertex_edge[i], f = first;
+    fan_edge own = edge_of(s, e);
+    tl_d3 n, seen = tl_frame_turn_back(pair->frame, p);
+    if (!side) {
+        turn_edge(pair->frame, &own);
+    }
+    if (first == TL_NO_FEATURE) {
+        return better;
+    }
+    do {
+        fan_edge across = edge_of(other, f);
+        if (side) {
+            turn_edge(pair->frame, &across);
+        }
+        if (crossing(side ? &across : &own, side ? &own : &across, &n) && may_be_less(n, seen, worth(best))) {
+            better |=
+                try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, side ? f : e),
+                              TL_FEATURE(TL_FEATURE_EDGE, side ? e : f), best);
+        }
+        f = other->edges[tl_hull_twin(f)].next;
+    } while (f != first);
+    return better;
+}
+
+/* The corners of the overlay next to that of the features, along the arcs that meet there. */
+static int try_neighbours(tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_gauss_depth *best) {
+    const tl_polytope *a = pair->a, *b = pair->b;
+    uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
+    if (TL_FEATURE_KIND(fa) == TL_FEATURE_EDGE && TL_FEATURE_KIND(fb) == TL_FEATURE_EDGE) {
+        return try_arc(pair, 0, e, b->edges[f].origin, best) || try_arc(pair, 0, e, b->edges[f ^ 1u].origin, best) ||
+               try_arc(pair, 1, f, a->edges[e].origin, best) || try_arc(pair, 1, f, a->edges[e ^ 1u].origin, best);
+    }
+    int side = TL_FEATURE_KIND(fb) == TL_FEATURE_FACE, better = 0;
+    const tl_polytope *s = side ? b : a;
+    uint32_t first = s->face_edge[side ? f : e], k = first;
+    do {
+        better = try_arc(pair, side, k, side ? e : f, best);
+        k = s->edges[k].next;
+    } while (!better && k != first);
+    return better;
+}
+
+/* The cells that meet in a corner, or the one of two vertices. */
+static int try_cells(tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_gauss_depth *best) {
+    uint32_t at_a = 0u, at_b = 0u, ia, ib;
+    int better = 0;
+    for (uint32_t i = 0; !better && corner(pair->a, fa, i, &at_a, &ia); ++i) {
+        for (uint32_t k = 0; !better && corner(pair->b, fb, k, &at_b, &ib); ++k) {
+            better = try_cell(pair, ia, ib, best);
+        }
+    }
+    return better;
+}
+
+void tl_gauss_descend(tl_gauss_pair *pair, tl_gauss_depth *best) {
+    int known = TL_FEATURE_KIND(best->feature_a) + TL_FEATURE_KIND(best->feature_b) > 2u * TL_FEATURE_VERTEX;
+    /* where the last minimum is one still, its neighbours are enough; else, and from anywhere else, all around */
+    int better = best->value > 0.0 && (!known || try_neighbours(pair, best->feature_a, best->feature_b, best));
+    while (better && best->value > 0.0) {
+        better = try_cells(pair, best->feature_a, best->feature_b, best);
     }
 }
 
@@ -210,11 +281,11 @@ static int normal_of(const tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_d3 
         return 0;
     }
     uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
-    if (TL_FEATURE_KIND(fa) == TL_FEATURE_FACE) {
+    if (TL_FEATURE_KIND(fa) == TL_FEATURE_FACE && TL_FEATURE_KIND(fb) == TL_FEATURE_VERTEX) {
         *n = tl_polytope_normal(a, e);
         return 1;
     }
-    if (TL_FEATURE_KIND(fb) == TL_FEATURE_FACE) {
+    if (TL_FEATURE_KIND(fb) == TL_FEATURE_FACE && TL_FEATURE_KIND(fa) == TL_FEATURE_VERTEX) {
         *n = tl_d_scale(tl_frame_turn(pair->frame, tl_polytope_normal(b, f)), -1.0);
         return 1;
     }
@@ -288,15 +359,12 @@ int tl_gauss_overlap(const tl_gauss_pair *pair, talus_feature_pair features) {
         return 0;
     }
     if (kind_a == TL_FEATURE_FACE) {
-        if (kind_b != TL_FEATURE_VERTEX) {
-            return 0;
-        }
         pb = tl_frame_point(pair->frame, tl_polytope_vertex(b, TL_FEATURE_INDEX(features.b)));
         return tl_polytope_holds(a, TL_FEATURE_INDEX(features.a), pb);
     }
     if (kind_b == TL_FEATURE_FACE) {
         pa = tl_frame_point_back(pair->frame, tl_polytope_vertex(a, TL_FEATURE_INDEX(features.a)));
-        return kind_a == TL_FEATURE_VERTEX && tl_polytope_holds(b, TL_FEATURE_INDEX(features.b), pa);
+        return tl_polytope_holds(b, TL_FEATURE_INDEX(features.b), pa);
     }
     d.ia = d.ib = 0u;
     d.feature_a = features.a;
