@@ -216,7 +216,7 @@ static void take_case(bench_table *table, const bench_case *c, const plan *p, do
 }
 
 int bench_take(bench_table *table, int quick, int watched) {
-    const plan full = {full_vertices, full_degrees, 10, 5, 5, 4e6},
+    const plan full = {full_vertices, full_degrees, 10, 5, 5, 2e7},
                small = {quick_vertices, quick_degrees, 2, 2, 3, 5e5};
     const plan *p = quick ? &small : &full;
     double *room = malloc(2u * TRIPS * POSES * sizeof *room);
