@@ -15,6 +15,7 @@
 #define MOST_RUNS 9u
 #define REFERENCES 10u       /* poses of a trip whose answers are compared */
 #define MOST_ENUMERATED 500u /* vertices up to which depths are compared with all features */
+#define SHORT 3e6            /* ns of a run */
 #define PI 3.14159265358979323846
 
 static const uint32_t full_vertices[] = {8, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000};
@@ -193,7 +194,12 @@ static void take_case(bench_table *table, const bench_case *c, const plan *p, do
     /* the methods take turns, so that a mood of the machine meets all of them */
     for (uint32_t run = 0; run < p->runs; run++) {
         for (int i = 0; i < count; i++) {
-            times[i][run] = time_of(methods[i], c, queries[i], answers);
+            double ns = time_of(methods[i], c, queries[i], answers);
+            if (ns * (double)(queries[i] * TRIPS) < SHORT) { /* once more, with the hulls in the caches */
+                double again = time_of(methods[i], c, queries[i], answers);
+                ns = again < ns ? again : ns;
+            }
+            times[i][run] = ns;
         }
     }
     for (uint32_t i = 0; i < TRIPS * POSES; i++) {
