@@ -76,7 +76,7 @@ static void go_on(kit_pair *p, tl_gauss_pair *pair, const tl_gauss_depth *proven
     tl_gauss_depth warm;
     tl_d3 pa, pb;
     tl_gauss_start(pair, again, &warm);
-    assert_true(fabs(warm.value - proven->value) <= 1e-9);
+    assert_true(fabs(warm.value - proven->value) <= 1e-7 * p->size); /* faces are flat to about 1e-6 */
     tl_gauss_points(pair, proven, &pa, &pb);
     tl_d3 gap = tl_d_sub(tl_d_sub(pa, pb), tl_d_scale(proven->n, proven->value));
     assert_true(tl_d_length(gap) <= 2e-6 * p->size);
