@@ -80,6 +80,11 @@ TEST_LINK = $(CC)
 
 HAS_CJSON := $(shell printf '\#include <cjson/cJSON.h>\n' | $(CC) $(CFLAGS) -E - >/dev/null 2>&1 && echo yes)
 
+# libccd is nothing that the tool needs: `talus bench queries` times it beside the library's own where it is there.
+HAS_CCD := $(shell printf '\#include <ccd/ccd.h>\n' | $(CC) $(CFLAGS) -E - >/dev/null 2>&1 && echo yes)
+TOOL_LIBS = -lcjson $(if $(HAS_CCD),-lccd) -lm
+$(BUILD)/tools/talus/bench_ccd.o: DEFINES = $(if $(HAS_CCD),-DTALUS_TOOL_CCD)
+
 .PHONY: all lib tool run test bench profile-cost snapshot-cost sanitize fuzz golden golden-update lint format install deps deps-full ci clean help FORCE
 .DELETE_ON_ERROR:
 
@@ -124,7 +129,7 @@ $(BUILD)/%_avx2.o: %_avx2.c $(BUILD)/flags
 $(BUILD)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	@echo "  CC $<"
-	$(Q)$(CC) $(C_FLAGS) $(INCLUDES) $(DEPENDS) -c $< -o $@
+	$(Q)$(CC) $(C_FLAGS) $(DEFINES) $(INCLUDES) $(DEPENDS) -c $< -o $@
 
 # The page as bytes: a string of its length is more than C99 promises to take.
 $(BUILD)/tools/talus/profile_page.c: tools/talus/profile_page.html
@@ -156,7 +161,7 @@ $(TOOLS_LIB): $(TOOLS_OBJ)
 
 $(TOOL): $(TOOL_MAIN:%.c=$(BUILD)/%.o) $(TOOLS_LIB) $(LIB)
 	@echo "  LD $@"
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $^ -lcjson -lm -o $@
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $^ $(TOOL_LIBS) -o $@
 
 # --- tests ------------------------------------------------------------------------------------------
 

@@ -46,12 +46,15 @@ typedef struct talus_separation {
  * rotation of all zeros (others are taken as normalised), coordinates beyond TALUS_MAX_COORDINATE; TALUS_NOT_FINITE.
  * The shapes are as talus_convex_init made them. */
 
-/* Closest points. Cold about 1 to 2 microseconds from 20 to 2000 vertices. */
+/* Closest points. Cold about 1 to 3 microseconds from 20 to 2000 vertices. */
 talus_status talus_distance(const talus_convex *a, const talus_pose *pose_a, const talus_convex *b,
                             const talus_pose *pose_b, talus_feature_pair *features, talus_separation *out);
 
 typedef enum talus_depth_mode {
-    TALUS_DEPTH_LOCAL,  /* down from the last features, or from the centres, to what no neighbour undercuts */
+    /* Down from the last features to what no neighbour undercuts: the least in about 19 of 20 after a degree. Without
+     * such features an expanding polytope finds where to start: the least but of round hulls of hundreds of vertices,
+     * where it may be a percent more. */
+    TALUS_DEPTH_LOCAL,
     TALUS_DEPTH_PROVEN, /* and on until nothing is less: about a hundred supports more as a rule */
     TALUS_DEPTH_MODE_COUNT
 } talus_depth_mode;

@@ -8,6 +8,10 @@
  * whatever rounding does, and the descent is strict. Metres, in A's frame. */
 #include "collide/gauss_walk.h"
 
+#include "collide/gjk.h"
+#include "collide/vclip.h"
+
+#define FAN 16u        /* edges of a vertex that are laid out at a time */
 #define PARALLEL 1e-18 /* squared sine below which two edges have no normal */
 
 void tl_gauss_look(tl_gauss_pair *pair, tl_d3 n, uint32_t ia, uint32_t ib, tl_gauss_depth *out) {
@@ -48,9 +52,26 @@ static int may_be_less(tl_d3 n, tl_d3 p, double limit) {
     return h <= 0.0 || h * h < limit * limit * tl_d_dot(n, n);
 }
 
+/* Whether no neighbour of a vertex is further along a direction, by more than rounding. */
+static int supports(const tl_polytope *p, uint32_t vertex, tl_d3 direction) {
+    uint32_t first = p->vertex_edge[vertex], e = first;
+    double here = tl_d_dot(direction, tl_polytope_vertex(p, vertex)) + 1e-6 * (double)p->size;
+    if (first == TL_NO_FEATURE) {
+        return 1;
+    }
+    do {
+        uint32_t twin = tl_hull_twin(e);
+        if (tl_d_dot(direction, tl_polytope_vertex(p, p->edges[twin].origin)) > here) {
+            return 0;
+        }
+        e = p->edges[twin].next;
+    } while (e != first);
+    return 1;
+}
+
 /* The faces around a vertex of one side, against the other side's vertex. */
 static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
-    const tl_polytope *s = side ? pair->b : pair->a;
+    const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
     uint32_t first = s->vertex_edge[side ? ib : ia], e = first;
     int better = 0;
     if (s->face_count == 0u) {
@@ -60,7 +81,11 @@ static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl
         uint32_t face = s->edges[e].face;
         tl_d3 n = tl_polytope_normal(s, face);
         n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
-        if (may_be_less(n, p, worth(best))) {
+        if (!may_be_less(n, p, worth(best))) {
+            e = s->edges[tl_hull_twin(e)].next;
+            continue;
+        }
+        if (supports(other, side ? ia : ib, side ? n : tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)))) {
             better |= try_direction(pair, n, ia, ib,
                                     side ? TL_FEATURE(TL_FEATURE_VERTEX, ia) : TL_FEATURE(TL_FEATURE_FACE, face),
                                     side ? TL_FEATURE(TL_FEATURE_FACE, face) : TL_FEATURE(TL_FEATURE_VERTEX, ib), best);
@@ -70,36 +95,43 @@ static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl
     return better;
 }
 
-/* An edge of A as B's frame sees it: its direction and the normals on its left and right. */
-typedef struct seen_edge {
+/* An edge away from a vertex, in B's frame: its direction and the normals on its left and right. */
+typedef struct fan_edge {
+    uint32_t index;
     tl_d3 u, left, right;
-    int has_faces;
-} seen_edge;
+} fan_edge;
 
-/* The normal of an edge of A and half-edge f of B if their arcs cross, pointing from A to B. */
-static int crossing(const seen_edge *e, const tl_polytope *b, uint32_t f, tl_d3 *n) {
-    tl_d3 v = tl_d_sub(tl_polytope_vertex(b, b->edges[f ^ 1u].origin), tl_polytope_vertex(b, b->edges[f].origin));
-    double left = 0.0, right = 0.0, near_left = 0.0, near_right = 0.0;
-    tl_d3 outward = e->has_faces ? tl_d_add(e->left, e->right) : tl_d(0.0, 0.0, 0.0);
-    if (e->has_faces) {
-        near_left = tl_d_dot(e->left, v), near_right = tl_d_dot(e->right, v);
-        if (near_left * near_right > 0.0) {
-            return 0;
-        }
+static fan_edge edge_of(const tl_polytope *p, uint32_t e) {
+    fan_edge s = {e, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    s.u = tl_d_sub(tl_polytope_vertex(p, p->edges[e ^ 1u].origin), tl_polytope_vertex(p, p->edges[e].origin));
+    if (p->face_count > 0u) {
+        s.left = tl_polytope_normal(p, p->edges[e].face);
+        s.right = tl_polytope_normal(p, p->edges[e ^ 1u].face);
     }
-    if (b->face_count > 0u) {
-        tl_d3 m_left = tl_polytope_normal(b, b->edges[f].face), m_right = tl_polytope_normal(b, b->edges[f ^ 1u].face);
-        left = tl_d_dot(m_left, e->u), right = tl_d_dot(m_right, e->u);
-        /* the arcs' planes cross in two opposite places; one of them must be on both */
-        if (left * right > 0.0 || left * near_right > 0.0 || right * near_left > 0.0) {
-            return 0;
-        }
-        outward = e->has_faces ? outward : tl_d_scale(tl_d_add(m_left, m_right), -1.0);
-    }
-    *n = tl_d_cross(e->u, v);
-    if (!(tl_d_dot(*n, *n) > PARALLEL * tl_d_dot(e->u, e->u) * tl_d_dot(v, v))) {
+    return s;
+}
+
+static void turn_edge(const tl_frame *frame, fan_edge *s) {
+    s->u = tl_frame_turn_back(frame, s->u);
+    s->left = tl_frame_turn_back(frame, s->left);
+    s->right = tl_frame_turn_back(frame, s->right);
+}
+
+/* The normal of an edge of A and one of B if their arcs cross, pointing from A to B. What has no faces has normals of
+ * 0, and its arc goes all around. */
+static int crossing(const fan_edge *a, const fan_edge *b, tl_d3 *n) {
+    double near_left = tl_d_dot(a->left, b->u), near_right = tl_d_dot(a->right, b->u);
+    double left = tl_d_dot(b->left, a->u), right = tl_d_dot(b->right, a->u);
+    /* The arcs' planes cross in two opposite places; one of them must be on both. One branch, for each of these by
+     * itself is a toss of a coin. */
+    if ((near_left * near_right > 0.0) | (left * right > 0.0) | (left * near_right > 0.0) | (right * near_left > 0.0)) {
         return 0;
     }
+    *n = tl_d_cross(a->u, b->u);
+    if (!(tl_d_dot(*n, *n) > PARALLEL * tl_d_dot(a->u, a->u) * tl_d_dot(b->u, b->u))) {
+        return 0;
+    }
+    tl_d3 outward = tl_d_sub(tl_d_add(a->left, a->right), tl_d_add(b->left, b->right));
     if (tl_d_dot(*n, outward) < 0.0) {
         *n = tl_d_scale(*n, -1.0);
     }
@@ -109,29 +141,31 @@ static int crossing(const seen_edge *e, const tl_polytope *b, uint32_t f, tl_d3 
 /* The crossings of the edges around a vertex of A with those around one of B. */
 static int try_edges(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
     const tl_polytope *a = pair->a, *b = pair->b;
-    uint32_t first_a = a->vertex_edge[ia], first_b = b->vertex_edge[ib], e = first_a;
-    tl_d3 at_a = tl_polytope_vertex(a, ia), n, seen = tl_frame_turn_back(pair->frame, p);
+    uint32_t first_a = a->vertex_edge[ia], first_b = b->vertex_edge[ib], e = first_a, f = first_b;
+    tl_d3 n, seen = tl_frame_turn_back(pair->frame, p);
     int better = 0;
     if (first_a == TL_NO_FEATURE || first_b == TL_NO_FEATURE) {
         return 0;
     }
     do {
-        uint32_t twin = tl_hull_twin(e), f = first_b;
-        seen_edge s = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, a->face_count > 0u};
-        s.u = tl_frame_turn_back(pair->frame, tl_d_sub(tl_polytope_vertex(a, a->edges[twin].origin), at_a));
-        if (s.has_faces) {
-            s.left = tl_frame_turn_back(pair->frame, tl_polytope_normal(a, a->edges[e].face));
-            s.right = tl_frame_turn_back(pair->frame, tl_polytope_normal(a, a->edges[twin].face));
-        }
+        fan_edge fan[FAN];
+        uint32_t count = 0u;
         do {
-            if (crossing(&s, b, f, &n) && may_be_less(n, seen, worth(best))) {
-                better |= try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, e),
-                                        TL_FEATURE(TL_FEATURE_EDGE, f), best);
-            }
+            fan[count++] = edge_of(b, f);
             f = b->edges[tl_hull_twin(f)].next;
-        } while (f != first_b);
-        e = a->edges[twin].next;
-    } while (e != first_a);
+        } while (f != first_b && count < FAN);
+        do {
+            fan_edge s = edge_of(a, e);
+            turn_edge(pair->frame, &s);
+            for (uint32_t k = 0; k < count; ++k) {
+                if (crossing(&s, &fan[k], &n) && may_be_less(n, seen, worth(best))) {
+                    better |= try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, e),
+                                            TL_FEATURE(TL_FEATURE_EDGE, fan[k].index), best);
+                }
+            }
+            e = a->edges[tl_hull_twin(e)].next;
+        } while (e != first_a);
+    } while (f != first_b);
     return better;
 }
 
@@ -159,55 +193,186 @@ static int corner(const tl_polytope *p, uint32_t feature, uint32_t turn, uint32_
     }
 }
 
+/* Where the arc of A's half-edge e leads from the corners of the overlay on it, within the cell of B's vertex ib: to
+ * the faces on both sides and to the arcs of B's edges. The other way round with `side` 1. */
+static int try_arc(tl_gauss_pair *pair, int side, uint32_t e, uint32_t i, tl_gauss_depth *best) {
+    const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
+    uint32_t tail = s->edges[e].origin, ia = side ? i : tail, ib = side ? tail : i;
+    tl_d3 p = tl_d_sub(tl_polytope_vertex(pair->a, ia), tl_frame_point(pair->frame, tl_polytope_vertex(pair->b, ib)));
+    int better = 0;
+    for (uint32_t k = 0; k < 2u && s->face_count > 0u; ++k) {
+        uint32_t face = s->edges[e ^ k].face;
+        tl_d3 n = tl_polytope_normal(s, face);
+        n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
+        if (may_be_less(n, p, worth(best)) &&
+            supports(other, i, side ? n : tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)))) {
+            better |= try_direction(pair, n, ia, ib,
+                                    side ? TL_FEATURE(TL_FEATURE_VERTEX, ia) : TL_FEATURE(TL_FEATURE_FACE, face),
+                                    side ? TL_FEATURE(TL_FEATURE_FACE, face) : TL_FEATURE(TL_FEATURE_VERTEX, ib), best);
+        }
+    }
+    uint32_t first = other->vertex_edge[i], f = first;
+    fan_edge own = edge_of(s, e);
+    tl_d3 n, seen = tl_frame_turn_back(pair->frame, p);
+    if (!side) {
+        turn_edge(pair->frame, &own);
+    }
+    if (first == TL_NO_FEATURE) {
+        return better;
+    }
+    do {
+        fan_edge across = edge_of(other, f);
+        if (side) {
+            turn_edge(pair->frame, &across);
+        }
+        if (crossing(side ? &across : &own, side ? &own : &across, &n) && may_be_less(n, seen, worth(best))) {
+            better |=
+                try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, side ? f : e),
+                              TL_FEATURE(TL_FEATURE_EDGE, side ? e : f), best);
+        }
+        f = other->edges[tl_hull_twin(f)].next;
+    } while (f != first);
+    return better;
+}
+
+/* The corners of the overlay next to that of the features, along the arcs that meet there. */
+static int try_neighbours(tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_gauss_depth *best) {
+    const tl_polytope *a = pair->a, *b = pair->b;
+    uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
+    if (TL_FEATURE_KIND(fa) == TL_FEATURE_EDGE && TL_FEATURE_KIND(fb) == TL_FEATURE_EDGE) {
+        return try_arc(pair, 0, e, b->edges[f].origin, best) || try_arc(pair, 0, e, b->edges[f ^ 1u].origin, best) ||
+               try_arc(pair, 1, f, a->edges[e].origin, best) || try_arc(pair, 1, f, a->edges[e ^ 1u].origin, best);
+    }
+    int side = TL_FEATURE_KIND(fb) == TL_FEATURE_FACE, better = 0;
+    const tl_polytope *s = side ? b : a;
+    uint32_t first = s->face_edge[side ? f : e], k = first;
+    do {
+        better = try_arc(pair, side, k, side ? e : f, best);
+        k = s->edges[k].next;
+    } while (!better && k != first);
+    return better;
+}
+
+/* The cells that meet in a corner, or the one of two vertices. */
+static int try_cells(tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_gauss_depth *best) {
+    uint32_t at_a = 0u, at_b = 0u, ia, ib;
+    int better = 0;
+    for (uint32_t i = 0; !better && corner(pair->a, fa, i, &at_a, &ia); ++i) {
+        for (uint32_t k = 0; !better && corner(pair->b, fb, k, &at_b, &ib); ++k) {
+            better = try_cell(pair, ia, ib, best);
+        }
+    }
+    return better;
+}
+
 void tl_gauss_descend(tl_gauss_pair *pair, tl_gauss_depth *best) {
-    int better = 1;
+    int known = TL_FEATURE_KIND(best->feature_a) + TL_FEATURE_KIND(best->feature_b) > 2u * TL_FEATURE_VERTEX;
+    /* where the last minimum is one still, its neighbours are enough; else, and from anywhere else, all around */
+    int better = best->value > 0.0 && (!known || try_neighbours(pair, best->feature_a, best->feature_b, best));
     while (better && best->value > 0.0) {
-        /* the cells that meet in this corner of the overlay; as soon as one has a deeper place, those around that */
-        uint32_t fa = best->feature_a, fb = best->feature_b, at_a = 0u, at_b = 0u, ia, ib;
-        better = 0;
-        for (uint32_t i = 0; !better && corner(pair->a, fa, i, &at_a, &ia); ++i) {
-            for (uint32_t k = 0; !better && corner(pair->b, fb, k, &at_b, &ib); ++k) {
-                better = try_cell(pair, ia, ib, best);
-            }
+        better = try_cells(pair, best->feature_a, best->feature_b, best);
+    }
+}
+
+/* Of the features' faces or edges, of any length; 0 if they are not a face and a vertex or two edges. */
+static int normal_of(const tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_d3 *n) {
+    const tl_polytope *a = pair->a, *b = pair->b;
+    if (!tl_polytope_has(a, fa) || !tl_polytope_has(b, fb)) {
+        return 0;
+    }
+    uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
+    if (TL_FEATURE_KIND(fa) == TL_FEATURE_FACE && TL_FEATURE_KIND(fb) == TL_FEATURE_VERTEX) {
+        *n = tl_polytope_normal(a, e);
+        return 1;
+    }
+    if (TL_FEATURE_KIND(fb) == TL_FEATURE_FACE && TL_FEATURE_KIND(fa) == TL_FEATURE_VERTEX) {
+        *n = tl_d_scale(tl_frame_turn(pair->frame, tl_polytope_normal(b, f)), -1.0);
+        return 1;
+    }
+    if (TL_FEATURE_KIND(fa) != TL_FEATURE_EDGE || TL_FEATURE_KIND(fb) != TL_FEATURE_EDGE) {
+        return 0;
+    }
+    tl_d3 u = tl_d_sub(tl_polytope_vertex(a, a->edges[e ^ 1u].origin), tl_polytope_vertex(a, a->edges[e].origin));
+    tl_d3 v = tl_d_sub(tl_polytope_vertex(b, b->edges[f ^ 1u].origin), tl_polytope_vertex(b, b->edges[f].origin));
+    tl_d3 outward;
+    if (a->face_count > 0u) {
+        outward = tl_d_add(tl_polytope_normal(a, a->edges[e].face), tl_polytope_normal(a, a->edges[e ^ 1u].face));
+    } else if (b->face_count > 0u) {
+        outward = tl_d_add(tl_polytope_normal(b, b->edges[f].face), tl_polytope_normal(b, b->edges[f ^ 1u].face));
+        outward = tl_d_scale(tl_frame_turn(pair->frame, outward), -1.0);
+    } else {
+        return 0;
+    }
+    *n = tl_d_cross(u, tl_frame_turn(pair->frame, v));
+    *n = tl_d_scale(*n, tl_d_dot(*n, outward) < 0.0 ? -1.0 : 1.0);
+    return tl_d_dot(*n, *n) > PARALLEL * tl_d_dot(u, u) * tl_d_dot(v, v);
+}
+
+/* The way out that the expanding polytope finds: the least but for its being made of floats and of 96 points at most.
+ */
+static tl_d3 by_expansion(const tl_gauss_pair *pair) {
+    tl_core a, b;
+    tl_simplex simplex;
+    tl_gjk near;
+    tl_depth depth;
+    tl_closest_cores(pair->a, pair->b, pair->frame, &a, &b);
+    simplex.count = 0;
+    talus_vec3 guess = tl_normalize_or(b.t, tl_v(0.0f, 1.0f, 0.0f));
+    if (tl_gjk_run(&a, &b, guess, 3e38f, &simplex, &near) == TL_GJK_APART) {
+        return tl_d_from(near.normal); /* they just touch */
+    }
+    tl_epa_run(&a, &b, &simplex, &depth);
+    return tl_d_from(depth.normal);
+}
+
+void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_depth *out) {
+    tl_d3 n;
+    uint32_t ia, ib, at = 0u;
+    int known = normal_of(pair, features.a, features.b, &n);
+    if (known) {
+        (void)corner(pair->a, features.a, 0u, &at, &ia);
+        (void)corner(pair->b, features.b, 0u, &at, &ib);
+    } else {
+        n = by_expansion(pair);
+        ia = tl_polytope_support(pair->a, n, 0u, 0);
+        ib = tl_polytope_support(pair->b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), 0u, 0);
+    }
+    tl_gauss_look(pair, tl_d_scale(n, 1.0 / tl_d_length(n)), ia, ib, out);
+    if (known) {
+        /* the features support along their normal if what does is no further out than they are */
+        tl_d3 here =
+            tl_d_sub(tl_polytope_vertex(pair->a, ia), tl_frame_point(pair->frame, tl_polytope_vertex(pair->b, ib)));
+        double size = (double)pair->a->size + (double)pair->b->size;
+        if (out->value - tl_d_dot(out->n, here) <= 1e-7 * size) {
+            out->feature_a = features.a;
+            out->feature_b = features.b;
         }
     }
 }
 
-void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_depth *out) {
+int tl_gauss_overlap(const tl_gauss_pair *pair, talus_feature_pair features) {
+    uint32_t kind_a = TL_FEATURE_KIND(features.a), kind_b = TL_FEATURE_KIND(features.b);
     const tl_polytope *a = pair->a, *b = pair->b;
-    tl_d3 n = tl_d_sub(tl_frame_point(pair->frame, b->center), a->center), u, v;
-    uint32_t ia = 0u, ib = 0u, fa = features.a, fb = features.b, at = 0u;
-    int known = tl_polytope_has(a, fa) && tl_polytope_has(b, fb);
-    if (known) {
-        (void)corner(a, fa, 0u, &at, &ia);
-        (void)corner(b, fb, 0u, &at, &ib);
-        if (TL_FEATURE_KIND(fa) == TL_FEATURE_FACE) {
-            n = tl_polytope_normal(a, TL_FEATURE_INDEX(fa));
-        } else if (TL_FEATURE_KIND(fb) == TL_FEATURE_FACE) {
-            n = tl_d_scale(tl_frame_turn(pair->frame, tl_polytope_normal(b, TL_FEATURE_INDEX(fb))), -1.0);
-        } else if (TL_FEATURE_KIND(fa) == TL_FEATURE_EDGE && TL_FEATURE_KIND(fb) == TL_FEATURE_EDGE) {
-            uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
-            u = tl_d_sub(tl_polytope_vertex(a, a->edges[e ^ 1u].origin), tl_polytope_vertex(a, ia));
-            v = tl_d_sub(tl_polytope_vertex(b, b->edges[f ^ 1u].origin), tl_polytope_vertex(b, ib));
-            tl_d3 across = tl_d_cross(u, tl_frame_turn(pair->frame, v)), outward = n;
-            if (a->face_count > 0u) {
-                outward =
-                    tl_d_add(tl_polytope_normal(a, a->edges[e].face), tl_polytope_normal(a, a->edges[e ^ 1u].face));
-            } else if (b->face_count > 0u) {
-                outward =
-                    tl_d_add(tl_polytope_normal(b, b->edges[f].face), tl_polytope_normal(b, b->edges[f ^ 1u].face));
-                outward = tl_d_scale(tl_frame_turn(pair->frame, outward), -1.0);
-            }
-            n = tl_d_scale(across, tl_d_dot(across, outward) < 0.0 ? -1.0 : 1.0);
-        }
+    tl_gauss_depth d;
+    tl_d3 pa, pb, n;
+    if (a->face_count == 0u || b->face_count == 0u || !normal_of(pair, features.a, features.b, &n)) {
+        return 0;
     }
-    double length = tl_d_length(n);
-    n = length > 1e-30 ? tl_d_scale(n, 1.0 / length) : tl_d(0.0, 1.0, 0.0);
-    if (!known) {
-        ia = tl_polytope_support(a, n, 0u, 0);
-        ib = tl_polytope_support(b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), 0u, 0);
+    if (kind_a == TL_FEATURE_FACE) {
+        pb = tl_frame_point(pair->frame, tl_polytope_vertex(b, TL_FEATURE_INDEX(features.b)));
+        return tl_polytope_holds(a, TL_FEATURE_INDEX(features.a), pb);
     }
-    tl_gauss_look(pair, n, ia, ib, out);
+    if (kind_b == TL_FEATURE_FACE) {
+        pa = tl_frame_point_back(pair->frame, tl_polytope_vertex(a, TL_FEATURE_INDEX(features.a)));
+        return tl_polytope_holds(b, TL_FEATURE_INDEX(features.b), pa);
+    }
+    d.ia = d.ib = 0u;
+    d.feature_a = features.a;
+    d.feature_b = features.b;
+    tl_gauss_points(pair, &d, &pa, &pb);
+    tl_d3 middle = tl_d_scale(tl_d_add(pa, pb), 0.5);
+    return tl_polytope_holds(a, a->edges[TL_FEATURE_INDEX(features.a)].face, middle) &&
+           tl_polytope_holds(b, b->edges[TL_FEATURE_INDEX(features.b)].face, tl_frame_point_back(pair->frame, middle));
 }
 
 void tl_gauss_points(const tl_gauss_pair *pair, const tl_gauss_depth *d, tl_d3 *point_a, tl_d3 *point_b) {

@@ -171,6 +171,40 @@ uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t v, 
     return v;
 }
 
+/* How far p is outside of a face in the polar dual about the body's centre: 1 on its plane. */
+static double dual_height(const tl_polytope *b, uint32_t face, tl_d3 from_center) {
+    tl_d3 n = tl_polytope_normal(b, face);
+    return tl_d_dot(n, from_center) / ((double)b->d[face] - tl_d_dot(n, b->center));
+}
+
+uint32_t tl_polytope_face_towards(const tl_polytope *b, uint32_t face, tl_d3 p, double *height) {
+    tl_d3 d = tl_d_sub(p, b->center);
+    double best = dual_height(b, face, d);
+    for (uint32_t steps = 0; steps < b->face_count; ++steps) {
+        uint32_t first = b->face_edge[face], e = first, to = face;
+        do {
+            uint32_t f = b->edges[e ^ 1u].face;
+            double h = dual_height(b, f, d);
+            if (h > best) {
+                best = h, to = f;
+            }
+            e = b->edges[e].next;
+        } while (e != first);
+        if (to == face) {
+            break;
+        }
+        face = to;
+    }
+    *height = best;
+    return face;
+}
+
+int tl_polytope_holds(const tl_polytope *b, uint32_t face, tl_d3 p) {
+    double height;
+    (void)tl_polytope_face_towards(b, face, p, &height);
+    return height < 1.0;
+}
+
 static double part(double x, double length) { return x <= 0.0 ? 0.0 : x >= length ? 1.0 : x / length; }
 
 double tl_segments(tl_d3 p0, tl_d3 p1, tl_d3 q0, tl_d3 q1, double *s, double *t) {

@@ -70,6 +70,12 @@ static inline tl_d3 tl_polytope_normal(const tl_polytope *p, uint32_t face) {
  * best of a few spread over the hull (jump and walk: Muecke, Saias & Zhu 1996). */
 uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t start, int near_it);
 
+/* Of what has faces: the one through which p is seen from the centre, by climbing from `face` (over the polar dual it
+ * is a linear function); *height is below 1 if p is within. */
+uint32_t tl_polytope_face_towards(const tl_polytope *b, uint32_t face, tl_d3 p, double *height);
+/* Whether p is inside. */
+int tl_polytope_holds(const tl_polytope *b, uint32_t face, tl_d3 p);
+
 /* The points of two segments that are next to one another, as parts s and t in [0, 1] of them; of parallel ones the
  * middle of the stretch where they run side by side. Their squared distance. */
 double tl_segments(tl_d3 p0, tl_d3 p1, tl_d3 q0, tl_d3 q1, double *s, double *t);

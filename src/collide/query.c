@@ -197,7 +197,11 @@ talus_status talus_penetration(const talus_convex *a, const talus_pose *pose_a, 
     if (status != TALUS_OK) {
         return status;
     }
-    tl_closest_find(&p.a, &p.b, &p.b_in_a, p.features, &c);
+    tl_gauss_pair pair = {&p.a, &p.b, &p.b_in_a, 0};
+    c.apart = c.cores_apart = 0;
+    if (p.a.round || p.b.round || !tl_gauss_overlap(&pair, p.features)) {
+        tl_closest_find(&p.a, &p.b, &p.b_in_a, p.features, &c);
+    }
     if (c.apart || c.cores_apart) {
         p.features = c.features;
     }

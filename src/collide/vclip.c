@@ -1,8 +1,9 @@
 /* Closest features of two convex polyhedra by walking from feature to neighbour: Mirtich, V-Clip: Fast and Robust
  * Polyhedral Collision Detection, ACM Transactions on Graphics 17(3), 1998, section 3. Two features hold the closest
- * points if each one's point lies in the other's Voronoi region; where an edge is asked, it is clipped by the region
- * and the distance to the region's feature looked at where it enters and leaves. No plane of a region is computed in
- * two ways, so that what is outside for one feature is inside for its neighbour.
+ * points if each one's point lies in the other's Voronoi region; if one does not, the neighbour behind the plane that
+ * it is behind is nearer. An edge over a face has no one closest point: it is clipped by the face's region, and the end
+ * looked at where it comes down to the face. Leaving an edge for its face takes more than the rounding of the face's
+ * normal, so that what is left is not come back to.
  *
  * A vertex inside of a region of a face but behind it, with all its edges leading further behind, is in the body or
  * beyond another face: the polar dual tells (a walk over faces to the one through which the vertex is seen from the
@@ -21,6 +22,7 @@
 /* More rounds cost more than the steps they save. */
 #define START_ROUNDS 5
 #define START_GAIN 0.01
+#define ROUNDING 1e-7 /* of a normal */
 #define NOTHING 1e-14 /* of the sizes: a distance that is all rounding */
 
 typedef struct feature {
@@ -35,8 +37,8 @@ typedef struct walk {
     tl_d3 common; /* then: a common point, in body 0's frame */
 } walk;
 
-/* The part of a segment from tail to head that is left inside of a region, and the neighbours behind the planes that
- * cut it: `out` is set if one plane alone has it all outside. */
+/* The part of a segment from tail to head that is left inside of a face's region, and the neighbours behind the planes
+ * that cut it: `out` is set if one plane alone has it all outside. */
 typedef struct clip {
     tl_d3 tail, head, u;
     double low, high;
@@ -97,18 +99,6 @@ static void clip_by(clip *c, double at_tail, double at_head, feature neighbour) 
 
 static tl_d3 clip_point(const clip *c, double x) { return tl_d_add(c->tail, tl_d_scale(c->u, x)); }
 
-/* How the distance to body `side`'s feature f changes along the segment at x: a number of the same sign. */
-static double slope(const clip *c, const walk *w, int side, feature f, double x) {
-    tl_d3 p = clip_point(c, x);
-    if (f.kind == TL_FEATURE_VERTEX) {
-        return tl_d_dot(c->u, tl_d_sub(p, vertex(w, side, f.index)));
-    }
-    tl_d3 n = tl_polytope_normal(w->body[side], f.index);
-    uint32_t on = tail_of(w, side, w->body[side]->face_edge[f.index]);
-    double height = tl_d_dot(n, tl_d_sub(p, vertex(w, side, on))), rise = tl_d_dot(n, c->u);
-    return height > 0.0 ? rise : height < 0.0 ? -rise : 0.0;
-}
-
 /* The outward normal, in the plane of its face, of a half-edge: the plane between the regions of both. */
 static tl_d3 side_plane(const walk *w, int side, uint32_t e) {
     const tl_polytope *p = w->body[side];
@@ -134,6 +124,17 @@ static feature leave_vertex(const walk *w, int side, tl_d3 p) {
     return make(0u, 0u);
 }
 
+/* The corners of a feature in body 0's frame: one or two of them. */
+static void ends(const walk *w, int side, tl_d3 *p, tl_d3 *q) {
+    feature f = w->at[side];
+    *p = vertex(w, side, f.kind == TL_FEATURE_EDGE ? tail_of(w, side, f.index) : f.index);
+    *q = f.kind == TL_FEATURE_EDGE ? vertex(w, side, head_of(w, side, f.index)) : *p;
+    if (side) {
+        *p = tl_frame_point(w->frame, *p);
+        *q = tl_frame_point(w->frame, *q);
+    }
+}
+
 static int vertex_vertex(walk *w) {
     for (int side = 0; side < 2; ++side) {
         feature to = leave_vertex(w, side, across(w, side, vertex(w, !side, w->at[!side].index)));
@@ -144,93 +145,63 @@ static int vertex_vertex(walk *w) {
     return DONE;
 }
 
-static int vertex_edge(walk *w, int side) {
-    const tl_polytope *b = w->body[side], *other = w->body[!side];
-    uint32_t e = w->at[!side].index, i = w->at[side].index;
-    tl_d3 p = across(w, !side, vertex(w, side, i));
-    uint32_t t = tail_of(w, !side, e), h = head_of(w, !side, e);
-    tl_d3 tail = vertex(w, !side, t), head = vertex(w, !side, h), u = tl_d_sub(head, tail);
-    tl_d3 from_tail = tl_d_sub(p, tail);
-    if (tl_d_dot(from_tail, u) < 0.0) {
-        return go(w, !side, make(TL_FEATURE_VERTEX, t));
-    }
-    if (tl_d_dot(tl_d_sub(p, head), u) > 0.0) {
-        return go(w, !side, make(TL_FEATURE_VERTEX, h));
-    }
-    for (uint32_t k = 0; k < 2u && other->face_count > 0u; ++k) {
-        uint32_t half = e ^ k;
-        if (tl_d_dot(tl_d_sub(p, k ? head : tail), side_plane(w, !side, half)) < 0.0) {
-            return go(w, !side, make(TL_FEATURE_FACE, other->edges[half].face));
+/* The face of body `side` beside edge `e`, which is u, over which d leads away from the edge at right angles; kind 0:
+ * over neither, by more than normals are rounded, without which edges of parallel faces would be left and come back to.
+ */
+static feature leave_wedge(const walk *w, int side, uint32_t e, tl_d3 u, tl_d3 d) {
+    const tl_polytope *b = w->body[side];
+    tl_d3 m = tl_d_cross(d, u);
+    for (uint32_t k = 0; k < 2u && b->face_count > 0u; ++k) {
+        uint32_t face = b->edges[e ^ k].face;
+        double off = tl_d_dot(m, tl_polytope_normal(b, face));
+        if ((k ? off > 0.0 : off < 0.0) && off * off > ROUNDING * ROUNDING * tl_d_dot(m, m)) {
+            return make(TL_FEATURE_FACE, face);
         }
-    }
-    uint32_t first = b->vertex_edge[i], k = first;
-    if (first == TL_NO_FEATURE) {
-        return DONE;
-    }
-    clip c;
-    clip_begin(&c, w, !side, e);
-    tl_d3 v = vertex(w, side, i), at_tail = tl_d_sub(c.tail, v), at_head = tl_d_sub(c.head, v);
-    do {
-        uint32_t twin = tl_hull_twin(k);
-        tl_d3 along = tl_d_sub(v, vertex(w, side, b->edges[twin].origin));
-        clip_by(&c, tl_d_dot(along, at_tail), tl_d_dot(along, at_head), make(TL_FEATURE_EDGE, k));
-        if (c.out.kind) {
-            return go(w, side, c.out);
-        }
-        k = b->edges[twin].next;
-    } while (k != first);
-    /* on the plane between them the vertex is as near as its edge */
-    if (c.below.kind && slope(&c, w, side, w->at[side], c.low) > 0.0) {
-        return go(w, side, c.below);
-    }
-    if (c.above.kind && slope(&c, w, side, w->at[side], c.high) < 0.0) {
-        return go(w, side, c.above);
-    }
-    return DONE;
-}
-
-/* Whether the closest point of the other body's clipped edge lies beyond where it was cut. */
-static feature leave_edge(const clip *c, const walk *w, int side) {
-    if (c->out.kind) {
-        return c->out;
-    }
-    if (c->below.kind && slope(c, w, side, c->below, c->low) > 0.0) {
-        return c->below;
-    }
-    if (c->above.kind && slope(c, w, side, c->above, c->high) < 0.0) {
-        return c->above;
     }
     return make(0u, 0u);
 }
 
-static int edge_edge(walk *w) {
-    for (int side = 0; side < 2; ++side) {
-        const tl_polytope *b = w->body[side];
-        uint32_t e = w->at[side].index, t = tail_of(w, side, e), h = head_of(w, side, e);
-        tl_d3 tail = vertex(w, side, t), head = vertex(w, side, h), u = tl_d_sub(head, tail);
-        clip c;
-        clip_begin(&c, w, !side, w->at[!side].index);
-        clip_by(&c, tl_d_dot(tl_d_sub(c.tail, tail), u), tl_d_dot(tl_d_sub(c.head, tail), u),
-                make(TL_FEATURE_VERTEX, t));
-        if (!c.out.kind) {
-            clip_by(&c, tl_d_dot(tl_d_sub(head, c.tail), u), tl_d_dot(tl_d_sub(head, c.head), u),
-                    make(TL_FEATURE_VERTEX, h));
-        }
-        feature to = leave_edge(&c, w, side);
-        if (to.kind) {
-            return go(w, side, to);
-        }
-        for (uint32_t k = 0; k < 2u && b->face_count > 0u && !c.out.kind; ++k) {
-            tl_d3 m = side_plane(w, side, e ^ k), on = k ? head : tail;
-            clip_by(&c, tl_d_dot(tl_d_sub(c.tail, on), m), tl_d_dot(tl_d_sub(c.head, on), m),
-                    make(TL_FEATURE_FACE, b->edges[e ^ k].face));
-        }
-        to = leave_edge(&c, w, side);
-        if (to.kind) {
-            return go(w, side, to);
-        }
+static int vertex_edge(walk *w, int side) {
+    uint32_t e = w->at[!side].index, t = tail_of(w, !side, e), h = head_of(w, !side, e);
+    tl_d3 p = across(w, !side, vertex(w, side, w->at[side].index)), tail = vertex(w, !side, t);
+    tl_d3 u = tl_d_sub(vertex(w, !side, h), tail), d = tl_d_sub(p, tail);
+    double along = tl_d_dot(d, u), length = tl_d_dot(u, u);
+    if (along < 0.0) {
+        return go(w, !side, make(TL_FEATURE_VERTEX, t));
     }
-    return DONE;
+    if (along > length) {
+        return go(w, !side, make(TL_FEATURE_VERTEX, h));
+    }
+    tl_d3 foot = tl_d_add(tail, tl_d_scale(u, along / length));
+    feature to = leave_wedge(w, !side, e, u, tl_d_sub(p, foot));
+    if (to.kind) {
+        return go(w, !side, to);
+    }
+    to = leave_vertex(w, side, across(w, side, foot));
+    return to.kind ? go(w, side, to) : DONE;
+}
+
+static int edge_edge(walk *w) {
+    tl_d3 p0, p1, q0, q1;
+    double s, t;
+    ends(w, 0, &p0, &p1);
+    ends(w, 1, &q0, &q1);
+    (void)tl_segments(p0, p1, q0, q1, &s, &t);
+    uint32_t e = w->at[0].index, f = w->at[1].index;
+    if (s <= 0.0 || s >= 1.0) {
+        return go(w, 0, make(TL_FEATURE_VERTEX, s <= 0.0 ? tail_of(w, 0, e) : head_of(w, 0, e)));
+    }
+    if (t <= 0.0 || t >= 1.0) {
+        return go(w, 1, make(TL_FEATURE_VERTEX, t <= 0.0 ? tail_of(w, 1, f) : head_of(w, 1, f)));
+    }
+    tl_d3 u = tl_d_sub(p1, p0), v = tl_d_sub(q1, q0);
+    tl_d3 d = tl_d_sub(tl_d_add(q0, tl_d_scale(v, t)), tl_d_add(p0, tl_d_scale(u, s)));
+    feature to = leave_wedge(w, 0, e, u, d);
+    if (to.kind) {
+        return go(w, 0, to);
+    }
+    to = leave_wedge(w, 1, f, tl_frame_turn_back(w->frame, v), tl_frame_turn_back(w->frame, tl_d_scale(d, -1.0)));
+    return to.kind ? go(w, 1, to) : DONE;
 }
 
 /* The edge of the face next to the segment. */
@@ -276,47 +247,20 @@ static int edge_face(walk *w, int side) {
     return c.above.kind ? go(w, !side, c.above) : go(w, side, make(TL_FEATURE_VERTEX, head_of(w, side, e)));
 }
 
-/* How far p is outside of a face in the polar dual about the body's centre: 1 on its plane. */
-static double dual_height(const tl_polytope *b, uint32_t face, tl_d3 from_center) {
-    tl_d3 n = tl_polytope_normal(b, face);
-    return tl_d_dot(n, from_center) / ((double)b->d[face] - tl_d_dot(n, b->center));
-}
-
-/* The face through which p is seen from the centre: a linear function over the dual, so that climbing finds it. */
-static uint32_t face_towards(const tl_polytope *b, uint32_t face, tl_d3 p, double *height) {
-    tl_d3 d = tl_d_sub(p, b->center);
-    double best = dual_height(b, face, d);
-    for (uint32_t steps = 0; steps < b->face_count; ++steps) {
-        uint32_t first = b->face_edge[face], e = first, to = face;
-        do {
-            uint32_t f = b->edges[e ^ 1u].face;
-            double h = dual_height(b, f, d);
-            if (h > best) {
-                best = h, to = f;
-            }
-            e = b->edges[e].next;
-        } while (e != first);
-        if (to == face) {
-            break;
-        }
-        face = to;
-    }
-    *height = best;
-    return face;
-}
-
 static int vertex_face(walk *w, int side) {
     const tl_polytope *b = w->body[!side], *own = w->body[side];
     uint32_t face = w->at[!side].index, first = b->face_edge[face], k = first, i = w->at[side].index;
     tl_d3 p = across(w, !side, vertex(w, side, i));
-    int outside = 0;
+    uint32_t outside = 0u, last = 0u;
     do {
         tl_d3 on = vertex(w, !side, tail_of(w, !side, k));
-        outside = tl_d_dot(tl_d_sub(p, on), side_plane(w, !side, k)) > 0.0;
+        if (tl_d_dot(tl_d_sub(p, on), side_plane(w, !side, k)) > 0.0) {
+            ++outside, last = k;
+        }
         k = b->edges[k].next;
-    } while (k != first && !outside);
+    } while (k != first);
     if (outside) {
-        return go(w, !side, make(TL_FEATURE_EDGE, nearest_side(w, !side, face, p, p)));
+        return go(w, !side, make(TL_FEATURE_EDGE, outside == 1u ? last : nearest_side(w, !side, face, p, p)));
     }
     tl_d3 n = tl_polytope_normal(b, face);
     double height = tl_d_dot(n, tl_d_sub(p, vertex(w, !side, tail_of(w, !side, first))));
@@ -339,7 +283,7 @@ static int vertex_face(walk *w, int side) {
     if (height > 0.0) {
         return DONE;
     }
-    uint32_t seen = face_towards(b, face, p, &height);
+    uint32_t seen = tl_polytope_face_towards(b, face, p, &height);
     if (height <= 1.0 || seen == face) {
         return meet(w, !side, p);
     }
@@ -380,17 +324,6 @@ static void start(walk *w) {
     w->at[1] = make(TL_FEATURE_VERTEX, ib);
 }
 
-/* The corners of a feature in body 0's frame: one or two of them. */
-static void ends(const walk *w, int side, tl_d3 *p, tl_d3 *q) {
-    feature f = w->at[side];
-    *p = vertex(w, side, f.kind == TL_FEATURE_EDGE ? tail_of(w, side, f.index) : f.index);
-    *q = f.kind == TL_FEATURE_EDGE ? vertex(w, side, head_of(w, side, f.index)) : *p;
-    if (side) {
-        *p = tl_frame_point(w->frame, *p);
-        *q = tl_frame_point(w->frame, *q);
-    }
-}
-
 /* Distance, normal and points of the cores from the features that hold them. */
 static void measure(const walk *w, tl_closest *out) {
     int face = w->at[1].kind == TL_FEATURE_FACE; /* the body of the face, if there is one */
@@ -429,19 +362,33 @@ static void measure(const walk *w, tl_closest *out) {
     }
 }
 
-/* Whether the bodies are as far apart along the normal as the features are: always so in exact arithmetic, and of a
- * face that has been seen to. */
+/* How far the corners next to an edge in its faces stand out over it along d, in its frame. */
+static double stand_out(const walk *w, int side, uint32_t e, tl_d3 d) {
+    const tl_half_edge *edges = w->body[side]->edges;
+    tl_d3 tail = vertex(w, side, edges[e].origin);
+    double most = 0.0;
+    for (uint32_t k = 0; k < 2u && w->body[side]->face_count > 0u; ++k) {
+        uint32_t third = edges[edges[edges[e ^ k].next].next].origin;
+        most = tl_d_max(most, tl_d_dot(d, tl_d_sub(vertex(w, side, third), tail)));
+    }
+    return most;
+}
+
+/* Whether the bodies are as far apart along the normal as the features are. In exact arithmetic they always are, and
+ * what is asked of a vertex and of a face to end there is just that; of an edge the normals of its faces are asked,
+ * which for slivers are off. */
 static int is_proven(const walk *w, const tl_closest *c) {
-    if (!c->cores_apart || w->at[0].kind == TL_FEATURE_FACE || w->at[1].kind == TL_FEATURE_FACE) {
+    double out = 0.0;
+    if (!c->cores_apart) {
         return 1;
     }
-    const tl_polytope *a = w->body[0], *b = w->body[1];
-    uint32_t ia = w->at[0].kind == TL_FEATURE_EDGE ? tail_of(w, 0, w->at[0].index) : w->at[0].index;
-    uint32_t ib = w->at[1].kind == TL_FEATURE_EDGE ? tail_of(w, 1, w->at[1].index) : w->at[1].index;
-    ia = tl_polytope_support(a, c->normal, ia, 1);
-    ib = tl_polytope_support(b, tl_frame_turn_back(w->frame, tl_d_scale(c->normal, -1.0)), ib, 1);
-    tl_d3 d = tl_d_sub(tl_frame_point(w->frame, vertex(w, 1, ib)), vertex(w, 0, ia));
-    return c->gap - tl_d_dot(c->normal, d) <= GAP_SLACK * c->gap + SIZE_SLACK * ((double)a->size + (double)b->size);
+    if (w->at[0].kind == TL_FEATURE_EDGE) {
+        out = stand_out(w, 0, w->at[0].index, c->normal);
+    }
+    if (w->at[1].kind == TL_FEATURE_EDGE) {
+        out += stand_out(w, 1, w->at[1].index, tl_frame_turn_back(w->frame, tl_d_scale(c->normal, -1.0)));
+    }
+    return out <= GAP_SLACK * c->gap + SIZE_SLACK * ((double)w->body[0]->size + (double)w->body[1]->size);
 }
 
 /* From the cores to the surfaces. */

@@ -205,7 +205,7 @@ static inline double d_best_separation(const tl_convex *a, const tl_convex *b, c
 
 /* ---- exact by enumeration, for cores that are polyhedra, segments or points ---- */
 
-#define D_POLY_MAX 256
+#define D_POLY_MAX 320
 
 typedef struct d_poly {
     int vertices, faces, edges;

@@ -36,10 +36,13 @@ int main(int count, char **arguments) {
     static const struct {
         const char *name;
         int (*run)(int count, char **arguments);
-    } commands[] = {{"run", tool_run},       {"profile", tool_profile}, {"scene", tool_scene},
-                    {"record", tool_record}, {"replay", tool_replay},   {"diff", tool_diff},
-                    {"help", help},          {"--help", help},          {"-h", help},
-                    {"version", version},    {"--version", version},    {"-V", version}};
+    } commands[] = {{"run", tool_run},       {"profile", tool_profile},
+                    {"scene", tool_scene},   {"record", tool_record},
+                    {"replay", tool_replay}, {"diff", tool_diff},
+                    {"bench", tool_bench},   {"help", help},
+                    {"--help", help},        {"-h", help},
+                    {"version", version},    {"--version", version},
+                    {"-V", version}};
     if (count < 2) {
         tool_print_manual(NULL);
         return TOOL_USAGE;

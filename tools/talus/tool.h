@@ -20,6 +20,7 @@ int tool_scene(int count, char **arguments);
 int tool_record(int count, char **arguments);
 int tool_replay(int count, char **arguments);
 int tool_diff(int count, char **arguments);
+int tool_bench(int count, char **arguments);
 
 /* Says whether the profile saved in B is slower than that in A, on the standard output: TOOL_SLOW then. An exit status.
  */

@@ -1,0 +1,99 @@
+/* `talus bench queries --quick`: every method is there and right to its bar, and what is written can be read. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "talus/bench_queries.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <string.h>
+
+static bench_table table;
+
+static int take(void **state) {
+    (void)state;
+    return bench_take(&table, 1, 0);
+}
+
+/* The largest relative error that a method may have. */
+static double bar(const bench_method *m) {
+    if (strncmp(m->name, "ccd-", 4) == 0) {
+        return m->yes_or_no ? 0.0 : 1.0; /* its depths are what they are */
+    }
+    return strcmp(m->name, "gauss-walk") == 0 ? 1.0 : strcmp(m->name, "epa") == 0 ? 1e-3 : 1e-6;
+}
+
+static void figures(void **state) {
+    (void)state;
+    assert_true(table.count > 0);
+    for (int k = 0; k < bench_own_count + bench_ccd_count; k++) {
+        const bench_method *m = k < bench_own_count ? &bench_own_methods[k] : &bench_ccd_methods[k - bench_own_count];
+        int rows = 0;
+        for (uint32_t i = 0; i < table.count; i++) {
+            const bench_row *r = &table.rows[i];
+            if (r->method != m) {
+                continue;
+            }
+            rows++;
+            assert_true(r->least > 0.0 && r->median >= r->least && r->spread >= 0.0 && r->queries > 0);
+            assert_true(r->mean_error >= 0.0 && r->mean_error <= r->most_error);
+            if (!(r->most_error <= bar(m))) {
+                fail_msg("%s of %u vertices is off by %g", m->name, (unsigned)r->vertices, r->most_error);
+            }
+            /* cold, the walk begins where the expanding polytope found the least */
+            assert_true(strcmp(m->name, "gauss-walk") != 0 || r->degrees != BENCH_RANDOM || r->most_error < 1e-6);
+        }
+        assert_int_equal(rows, 4);
+    }
+}
+
+static void json(void **state) {
+    (void)state;
+    gltf_text text = {NULL, 0, 0, 0};
+    bench_json(&table, &text);
+    assert_false(text.failed);
+    cJSON *root = cJSON_Parse(text.data);
+    assert_non_null(root);
+    const cJSON *rows = cJSON_GetObjectItem(root, "rows"), *row;
+    assert_int_equal((unsigned)cJSON_GetArraySize(rows), table.count);
+    uint32_t i = 0;
+    cJSON_ArrayForEach(row, rows) {
+        const cJSON *ns = cJSON_GetObjectItem(row, "ns"), *name = cJSON_GetObjectItem(row, "method");
+        assert_true(cJSON_IsNumber(ns) && fabs(ns->valuedouble - table.rows[i].least) <= 0.06);
+        assert_string_equal(name->valuestring, table.rows[i].method->name);
+        i++;
+    }
+    cJSON_Delete(root);
+    gltf_text_free(&text);
+}
+
+/* As many dots as the four panels have rows and their legend names, and no number that is none. */
+static void plot(void **state) {
+    (void)state;
+    gltf_text text = {NULL, 0, 0, 0};
+    int dots = 0, expected = 0;
+    bench_plot(&table, &text);
+    assert_false(text.failed);
+    assert_int_equal(strncmp(text.data, "<svg ", 5), 0);
+    assert_string_equal(text.data + text.size - 7, "</svg>\n");
+    assert_null(strstr(text.data, "nan"));
+    assert_null(strstr(text.data, "inf"));
+    for (const char *at = text.data; (at = strstr(at, "<circle")) != NULL; at++) {
+        dots++;
+    }
+    for (uint32_t i = 0; i < table.count; i++) {
+        expected += table.rows[i].degrees == 1.0;
+        expected += table.rows[i].vertices == 50 && !table.rows[i].method->yes_or_no;
+    }
+    assert_int_equal(dots, expected + bench_own_count + bench_ccd_count);
+    gltf_text_free(&text);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(figures), cmocka_unit_test(json), cmocka_unit_test(plot)};
+    return cmocka_run_group_tests(tests, take, NULL);
+}
