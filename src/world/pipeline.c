@@ -38,7 +38,7 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
 }
 
 /* Sweeps over the contacts until none meets fast enough to bounce. */
-static void strike(tl_step *step, const tl_kernels *k, tl_watch *w) {
+static void strike(tl_step *step, const tl_kernels *k) {
     tl_header *h = step->h;
     for (uint32_t sweep = 0, struck = 1; struck && sweep < MOST_SWEEPS; sweep++) {
         k->strike_contacts(step, 0, h->groups);
@@ -47,7 +47,6 @@ static void strike(tl_step *step, const tl_kernels *k, tl_watch *w) {
             struck |= tl_group_pool(h)[i].struck;
         }
     }
-    tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
 }
 
 static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch *w) {
@@ -66,7 +65,8 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     step->first_pass = first;
     if (first && step->bounces) {
         tl_watch_lap(w, TALUS_STAGE_SOLVE);
-        strike(step, k, w);
+        strike(step, k);
+        tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->solve_joints(step, 0, joints);
@@ -88,7 +88,8 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     }
     if (step->bounces) {
         tl_watch_lap(w, TALUS_STAGE_RELAX);
-        strike(step, k, w);
+        strike(step, k);
+        tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->relax_joints(step, 0, joints);
