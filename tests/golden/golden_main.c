@@ -137,6 +137,13 @@ static void print(const char *name, uint32_t steps, uint64_t hash) {
            (unsigned long)(hash & 0xffffffffu));
 }
 
+static uint64_t fold_bytes(uint64_t hash, const unsigned char *bytes, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        hash = golden_fold(hash, bytes[i]);
+    }
+    return hash;
+}
+
 /* A world in a block of its own. */
 typedef struct own_world {
     talus_world world;
@@ -168,9 +175,7 @@ static uint64_t move_house(own_world *own, const talus_world_def *def, uint64_t 
     size_t most = talus_world_save_size(&own->world), written = 0;
     unsigned char *bytes = more_memory(most);
     golden_check(talus_world_save(&own->world, bytes, most, &written), "save");
-    for (size_t i = 0; i < written; i++) {
-        hash = golden_fold(hash, bytes[i]);
-    }
+    hash = fold_bytes(hash, bytes, written);
     own_world other = open_world(def, own->world.geometry, own->world.geometry_bytes);
     golden_check(talus_world_restore(&other.world, bytes, written), "restore");
     free(own->memory);
@@ -225,6 +230,38 @@ static void run_queries(const golden_scene *scene, talus_isa isa, const void *ge
         golden_check(talus_world_step(&own.world, 1.0f / 60.0f, NULL, NULL), "step");
     }
     print("queries", ROUNDS, golden_queries(&own.world, ROUNDS));
+    free(own.memory);
+}
+
+/* A recording of a scene, keyframes among it, byte for byte. */
+static void run_recording(const golden_scene *scene, talus_isa isa, const void *geometry, size_t geometry_bytes) {
+    talus_world_def def = talus_world_def_default();
+    talus_recorder recorder;
+    const void *bytes;
+    size_t size, total = 0;
+    uint64_t hash = 0;
+    def.body_capacity = 256, def.shape_capacity = 512, def.joint_capacity = 128, def.contact_capacity = 1536;
+    def.isa = isa;
+    own_world own = open_world(&def, geometry, geometry_bytes);
+    size_t room = talus_recorder_size(&own.world, 1u << 16);
+    unsigned char *memory = more_memory(room);
+    golden_check(talus_recorder_begin(&recorder, &own.world, memory, room, &bytes, &size), "recording");
+    recorder.keyframe_work = 2000u;
+    hash = fold_bytes(hash, bytes, size), total += size;
+    golden_seed(20250101u);
+    scene->build(&own.world);
+    for (uint32_t i = 0; i < scene->steps; i++) {
+        if (scene->each) {
+            scene->each(&own.world, i);
+        }
+        golden_check(talus_world_step(&own.world, 1.0f / 60.0f, NULL, NULL), "step");
+        golden_check(talus_recorder_step(&recorder, &own.world, &bytes, &size), "a recorded step");
+        hash = fold_bytes(hash, bytes, size), total += size;
+    }
+    golden_check(talus_recorder_end(&recorder, &own.world, &bytes, &size), "the recording's end");
+    hash = fold_bytes(hash, bytes, size), total += size;
+    print("recording", scene->steps, golden_fold(hash, (uint32_t)total));
+    free(memory);
     free(own.memory);
 }
 
@@ -331,6 +368,9 @@ int main(int argc, char **argv) {
     for (unsigned i = 0; i < golden_scene_count; i++) {
         if (!only && strcmp(golden_scenes[i].name, "pile") == 0) { /* it has every type of shape */
             run_queries(&golden_scenes[i], isa, region, bytes);
+        }
+        if (!only && strcmp(golden_scenes[i].name, "churn") == 0) { /* things come and go */
+            run_recording(&golden_scenes[i], isa, region, bytes);
         }
     }
     return 0;
