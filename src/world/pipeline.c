@@ -78,6 +78,7 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
     if (first) {
+        tl_stage_stiffness(step);
         k->warm_contacts(step, 0, contacts);
         tl_watch_lap(w, TALUS_STAGE_SOLVE);
     }
@@ -85,7 +86,6 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     k->velocity(step, 0, step->rows);
     tl_watch_lap(w, TALUS_STAGE_VELOCITY);
     if (first) {
-        tl_stage_stiffness(step);
         k->begin_joints(step, 0, joints);
     }
     step->first_pass = first;

@@ -147,7 +147,46 @@ static int is_easy(const tl_header *h, const uint32_t *order, uint32_t count) {
     return most < EASY_RATIO * least;
 }
 
-static void find_components(finder *f) {
+/* What is torn apart or whirls is beyond what a linear solve can tell: taken back at once, its errors would fling it.
+ */
+#define WILD_SHARE 0.25f /* of the bodies' reach: how far off a joint may be */
+#define WILD_TURN 0.5f   /* rad in a sub-step: where the curve of an anchor's path is no guide any more */
+
+/* m: how far the locked rows of a joint are off. */
+static float error_of(const tl_header *h, const tl_joint_record *j) {
+    talus_pose a = tl_row_pose_of(&tl_body_pose(h)[j->body_a]), b = tl_row_pose_of(&tl_body_pose(h)[j->body_b]);
+    a = tl_pose_mul(&a, &j->place_a);
+    talus_vec3 d = tl_pose_point_back(&a, tl_pose_point(&b, j->place_b.position));
+    const float along[3] = {tl_abs(d.x), tl_abs(d.y), tl_abs(d.z)};
+    float most = 0.0f;
+    for (uint32_t k = 0; k < j->fixed; k++) {
+        uint32_t type = j->code[k] % TL_ROW_TYPES;
+        if (type < TL_ROW_ANGULAR) {
+            most = tl_max(most, along[type - TL_ROW_LINEAR]);
+        } else if (type == TL_ROW_DISTANCE) {
+            most = tl_max(most, tl_abs(tl_length(d) - j->param[k].lower));
+        }
+    }
+    return most;
+}
+
+static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
+    const tl_header *h = step->h;
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_joint_record *j = &tl_joints(h)[order[k]];
+        const tl_row8 *a = &tl_body_velocity(h)[j->body_a], *b = &tl_body_velocity(h)[j->body_b];
+        float reach = 0.0f;
+        reach += free_row(h, j->body_a) ? tl_body_inertias(h)[j->body_a].reach : 0.0f;
+        reach += free_row(h, j->body_b) ? tl_body_inertias(h)[j->body_b].reach : 0.0f;
+        float spin = tl_max(tl_length(tl_row_345(a)), tl_length(tl_row_345(b)));
+        if (!(spin * step->sub < WILD_TURN) || !(error_of(h, j) < WILD_SHARE * reach)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void find_components(const tl_step *step, finder *f) {
     tl_header *h = f->h;
     const uint32_t *awake = tl_awake_joint(h);
     uint32_t *of = tl_linkage_of(h), *order = tl_linkage_order(h);
@@ -157,7 +196,7 @@ static void find_components(finder *f) {
             continue;
         }
         uint32_t ends, count = gather(h, awake[k], f->joints, &ends);
-        if (count > 1u && is_easy(h, order + f->joints, count)) {
+        if (count > 1u && (is_easy(h, order + f->joints, count) || is_wild(step, order + f->joints, count))) {
             leave(h, f->joints, count);
         } else if (count > 1u) {
             uint32_t shape = shape_of(f, f->joints, count, ends);
@@ -274,7 +313,7 @@ void tl_linkages_find(tl_step *step) {
         return;
     }
     memset(tl_linkage_rows(h), 0, step->rows * sizeof(uint32_t));
-    find_components(&f);
+    find_components(step, &f);
     place_linkages(step, &f);
 }
 
@@ -282,7 +321,7 @@ void tl_linkages_find(tl_step *step) {
 
 static void set_turns(tl_header *h, uint32_t row, float turns) {
     if (tl_row_velocity(h)[row].f[7] > 0.0f) {
-        tl_row_velocity(h)[row].f[7] = tl_row_push(h)[row].f[7] = turns;
+        tl_row_velocity(h)[row].f[7] = tl_row_before(h)[row].f[7] = tl_row_push(h)[row].f[7] = turns;
     }
 }
 
