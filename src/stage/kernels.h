@@ -19,7 +19,10 @@ typedef struct tl_step {
     int pushes;  /* something is deep enough, or tied by joints, to be pushed */
     int bounces; /* something has restitution */
     int first_substep;
-    int first_pass; /* the first pass over the contacts in this step */
+    int stiff;       /* some body's moment of inertia counts as larger than it is */
+    int again;       /* only what was far from its place is looked at */
+    int before_move; /* impulses are those before the bodies move */
+    int first_pass;  /* the first pass over the contacts in this step */
 } tl_step;
 
 typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);
@@ -31,7 +34,12 @@ typedef struct tl_kernels {
     tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, strike_contacts,
         store_contacts;                                                                         /* groups */
     tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */
+    tl_kernel read_velocities, read_errors, apply_impulses, apply_pushes; /* linked joint groups */
+    tl_kernel solve_linkages;                                             /* linkages */
 } tl_kernels;
+
+/* Solves for the x of one linkage's joints in single floats. */
+void tl_linkage_solve_one(const tl_header *h, const tl_linkage *l);
 
 extern const tl_kernels tl_kernels_scalar;
 #if defined(__SSE2__)

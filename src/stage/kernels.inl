@@ -1,8 +1,9 @@
 /* All laned kernels, once for the lanes that the including file has chosen; it defines TL_KERNELS as the table's name.
  */
-#include "stage/kernels.h"
+#include "stage/stages.h"
 
 #include "base/vec_lanes.h"
+#include "base/width_eight.h"
 
 #include "stage/motion/motion.inl"
 #include "stage/narrow/batch.inl"
@@ -11,9 +12,12 @@
 #include "stage/solve/contacts.inl"
 #include "stage/solve/impacts.inl"
 #include "stage/solve/joints.inl"
+#include "stage/solve/linked_joints.inl"
 
 const tl_kernels TL_KERNELS = {
-    place_pairs,    collide_balls,  velocity,      position,        push,           prepare_contacts, warm_contacts,
-    solve_contacts, relax_contacts, push_contacts, strike_contacts, store_contacts, begin_joints,     turn_joints,
-    solve_joints,   relax_joints,   push_joints,   store_joints,
+    place_pairs,      collide_balls,  velocity,       position,        push,
+    prepare_contacts, warm_contacts,  solve_contacts, relax_contacts,  push_contacts,
+    strike_contacts,  store_contacts, begin_joints,   turn_joints,     solve_joints,
+    relax_joints,     push_joints,    store_joints,   read_velocities, read_errors,
+    apply_impulses,   apply_pushes,   solve_linkages,
 };

@@ -13,6 +13,18 @@ void tl_stage_body_rows(tl_step *step);
 void tl_stage_contact_groups(tl_step *step);
 void tl_stage_joint_groups(tl_step *step);
 
+/* Marks the groups of linkages in which some joint was too far from its place for one push; returns whether there are
+ * any. Those that share groups are marked together. */
+int tl_stage_far_linkages(tl_header *h);
+
+/* Joints that pull at a body are a spring against its turning, the stiffer the harder they pull (the geometric
+ * stiffness of Tournier, Nesme, Gilles and Faure, "Stable constrained dynamics", SIGGRAPH 2015). The sub-steps follow
+ * it up to h^2 k / I = 4; beyond TL_MOST_STIFF the moment of inertia counts as so much larger (Andrews, Teichmann and
+ * Kovecses, "Geometric stiffness for real-time constrained multibody dynamics", Eurographics 2017). */
+void tl_stage_stiffness(tl_step *step);
+#define TL_MOST_STIFF 1.0f
+#define TL_STIFF_PULL (0.25f * TL_MOST_STIFF) /* of one joint: from here on it is looked what all of them make */
+
 /* Keeps velocities off the axes that a body is locked to. */
 void tl_stage_locks(tl_step *step);
 

@@ -30,7 +30,7 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->inverse_sub = 1.0f / step->sub;
     step->warm_scale = h->settings.substep > 0.0f ? step->sub / h->settings.substep : 1.0f;
     step->rows = 0;
-    step->any_locks = step->first_pass = step->pushes = 0;
+    step->any_locks = step->first_pass = step->before_move = step->stiff = step->again = step->pushes = 0;
     h->settings.substep = step->sub;
     set_softness(step);
     tl_events_begin(h);
@@ -49,10 +49,35 @@ static void strike(tl_step *step, const tl_kernels *k) {
     }
 }
 
+/* The joints that hang together: what they have to meet, all of it at once, and back to the bodies. */
+static void run_linkages(const tl_step *step, const tl_kernels *k, tl_kernel read, tl_kernel apply) {
+    if (step->h->linkages) {
+        read(step, 0, step->h->joint_groups);
+        k->solve_linkages(step, 0, step->h->linkages);
+        apply(step, 0, step->h->joint_groups);
+    }
+}
+
+/* Velocities of linkages, again where a range would have had to pull. */
+#define MOST_RELEASES 2u
+
+static void run_linked_velocities(tl_step *step, const tl_kernels *k) {
+    run_linkages(step, k, k->read_velocities, k->apply_impulses);
+    step->again = 1;
+    for (uint32_t i = 0; i < MOST_RELEASES && tl_stage_far_linkages(step->h); i++) {
+        run_linkages(step, k, k->read_velocities, k->apply_impulses);
+    }
+    step->again = 0;
+}
+
+/* How often in a sub-step errors of linked joints are taken back that are too large for once. */
+#define MOST_PUSHES 8u
+
 static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch *w) {
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
     if (first) {
+        tl_stage_stiffness(step);
         k->warm_contacts(step, 0, contacts);
         tl_watch_lap(w, TALUS_STAGE_SOLVE);
     }
@@ -70,6 +95,9 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->solve_joints(step, 0, joints);
+        step->before_move = 1;
+        run_linked_velocities(step, k);
+        step->before_move = 0;
         step->first_pass = first && i == 0;
         k->solve_contacts(step, 0, contacts);
     }
@@ -80,12 +108,21 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     tl_watch_lap(w, TALUS_STAGE_SOLVE);
     k->position(step, 0, step->rows);
     tl_watch_lap(w, TALUS_STAGE_POSITION);
+    tl_stage_stiffness(step);
     k->turn_joints(step, 0, joints);
     if (step->pushes) {
         k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
+        run_linkages(step, k, k->read_errors, k->apply_pushes);
         k->push(step, 0, step->rows);
     }
+    step->again = 1;
+    for (uint32_t i = 1; i < MOST_PUSHES && tl_stage_far_linkages(h); i++) {
+        k->turn_joints(step, 0, joints);
+        run_linkages(step, k, k->read_errors, k->apply_pushes);
+        k->push(step, 0, step->rows);
+    }
+    step->again = 0;
     if (step->bounces) {
         tl_watch_lap(w, TALUS_STAGE_RELAX);
         strike(step, k);
@@ -93,6 +130,7 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     }
     for (uint32_t i = 0; i < passes; i++) {
         k->relax_joints(step, 0, joints);
+        run_linked_velocities(step, k);
         k->relax_contacts(step, 0, contacts);
     }
     if (step->any_locks) {

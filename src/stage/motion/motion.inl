@@ -147,6 +147,16 @@ static void position(const tl_step *step, uint32_t first, uint32_t last) {
     }
 }
 
+/* Whether any of eight rows is to be displaced. */
+static inline int any_pushed(const tl_row8 *rows) {
+    tl_f8 zero = tl_f8_zero();
+    tl_m8 any = tl_m8_zero();
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        any = tl_m8_or(any, tl_f8_gt(tl_f8_abs(tl_f8_load(rows[k].f)), zero));
+    }
+    return (tl_m8_bits(any) & 0x3fu) != 0; /* the last two are no displacement */
+}
+
 /* push: takes the displacements of the push into the poses. */
 static void push(const tl_step *step, uint32_t first, uint32_t last) {
     tl_row8 *moves = tl_row_moved(step->h), *poses = tl_row_pose(step->h), *pushes = tl_row_push(step->h);
@@ -154,28 +164,38 @@ static void push(const tl_step *step, uint32_t first, uint32_t last) {
     const tl_row8 *frames = tl_row_frame(step->h);
     for (uint32_t i = first; i < last; i += TL_LANES) {
         tl_f8 d[8], m[8], p[8], f[8];
+        if (!any_pushed(pushes + i)) {
+            continue;
+        }
         load_eight(pushes + i, d);
         load_eight(moves + i, m);
         load_eight(poses + i, p);
         load_eight(frames + i, f);
+        tl_f8 l[8], way = tl_f8_zero();
+        load_eight(momenta + i, l);
         for (int k = 0; k < 6; k++) {
-            m[k] = tl_f8_add(m[k], d[k]);
+            way = tl_f8_add(way, tl_f8_abs(d[k]));
+        }
+        /* What is not displaced keeps its bits, whatever stands beside it. */
+        tl_m8 pushed = tl_f8_gt(way, tl_f8_zero());
+        for (int k = 0; k < 6; k++) {
+            m[k] = tl_f8_select(pushed, tl_f8_add(m[k], d[k]), m[k]);
         }
         for (int k = 0; k < 3; k++) {
-            p[k] = tl_f8_add(p[k], d[k]);
+            p[k] = tl_f8_select(pushed, tl_f8_add(p[k], d[k]), p[k]);
         }
         q8 q = q8_of(p[3], p[4], p[5], p[6]), frame = q8_of(f[0], f[1], f[2], f[3]);
         v8 w = q8_rotate(frame, v8_mul(v8_of(f[4], f[5], f[6]), v8_of(d[3], d[4], d[5])));
         q8 turn = exp_half(turn_of(w, tl_f8_set1(1.0f))), turned = q8_normalize(q8_mul(turn, q));
-        tl_f8 l[8];
-        load_eight(momenta + i, l);
         /* A slender body's spin about its own axis turns with it: a little of the momentum across would be a lot there.
          */
         v8 momentum = v8_of(l[0], l[1], l[2]);
-        momentum = v8_select(tl_f8_gt(l[6], tl_f8_zero()), q8_rotate(turn, momentum), momentum);
+        tl_m8 follows = tl_m8_and(pushed, tl_f8_gt(l[6], tl_f8_zero()));
+        momentum = v8_select(follows, q8_rotate(turn, momentum), momentum);
         l[0] = momentum.x, l[1] = momentum.y, l[2] = momentum.z;
         store_eight(momenta + i, l);
-        p[3] = turned.x, p[4] = turned.y, p[5] = turned.z, p[6] = turned.w;
+        p[3] = tl_f8_select(pushed, turned.x, q.x), p[4] = tl_f8_select(pushed, turned.y, q.y);
+        p[5] = tl_f8_select(pushed, turned.z, q.z), p[6] = tl_f8_select(pushed, turned.w, q.w);
         for (int k = 0; k < 6; k++) {
             d[k] = tl_f8_zero();
         }

@@ -3,7 +3,7 @@
  * shared. */
 #include <string.h>
 
-#include "stage/stages.h"
+#include "stage/row/groups.h"
 
 /* Order: by colour, and within it by how many points there are, so that groups are of a kind. */
 #define KEYS ((TL_COLORS + 1u) * 4u)
@@ -101,12 +101,12 @@ void tl_stage_contact_groups(tl_step *step) {
 
 /* --- joints ----------------------------------------------------------------------------------- */
 
-static int same_kind(const tl_joint_record *a, const tl_joint_record *b) {
+int tl_joints_alike(const tl_joint_record *a, const tl_joint_record *b) {
     return a->rows == b->rows && a->fixed == b->fixed && a->free_axis == b->free_axis &&
            memcmp(a->code, b->code, sizeof a->code) == 0;
 }
 
-static tl_joint_group *open_joint_group(tl_header *h, const tl_joint_record *j) {
+tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j) {
     if (h->joint_groups >= h->capacity[TL_COUNT_JOINTGROUP] ||
         h->joint_rows + j->rows > h->capacity[TL_COUNT_JOINTROW]) {
         return NULL;
@@ -120,12 +120,29 @@ static tl_joint_group *open_joint_group(tl_header *h, const tl_joint_record *j) 
     g->first_row = h->joint_rows;
     g->free_axis = j->free_axis == TL_NONE ? 0u : j->free_axis;
     memcpy(g->code, j->code, sizeof g->code);
+    for (uint32_t r = 0; r < TL_LINK_ROWS && r < g->fixed; r++) {
+        for (uint32_t k = 0; k < TL_LANES; k++) {
+            g->active[r][k] = 1.0f;
+        }
+    }
     memset(tl_joint_row_pool(h) + g->first_row, 0, j->rows * sizeof(tl_joint_row));
     h->joint_rows += j->rows;
     return g;
 }
 
-static void fill_lane(const tl_step *step, tl_joint_group *g, uint32_t joint) {
+/* |arm| over the least moment of inertia about an axis across it; s are the roots of the inverse moments. */
+static float give_of(const tl_header *h, uint32_t body, talus_vec3 arm) {
+    const float *s = tl_body_inertias(h)[body].s;
+    float square = tl_dot(arm, arm), most = 0.0f;
+    if (!tl_body_row(h)[body] || !(square > 0.0f)) {
+        return 0.0f;
+    }
+    most = tl_max(s[0] * s[0] * (square - arm.x * arm.x), s[1] * s[1] * (square - arm.y * arm.y));
+    most = tl_max(most, s[2] * s[2] * (square - arm.z * arm.z));
+    return most / sqrtf(square);
+}
+
+void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint) {
     tl_header *h = step->h;
     const tl_joint_record *j = &tl_joints(h)[joint];
     const tl_joint_state *s = &tl_joint_states(h)[joint];
@@ -155,6 +172,15 @@ static void fill_lane(const tl_step *step, tl_joint_group *g, uint32_t joint) {
         rows[r].speed[k] = p->speed, rows[r].most[k] = p->most, rows[r].per_mass[k] = p->per_mass;
         rows[r].impulse[k] = s->impulse[r] * step->warm_scale;
     }
+    if (g->linked) {
+        g->give[0][k] = give_of(h, j->body_a, j->place_a.position);
+        g->give[1][k] = give_of(h, j->body_b, j->place_b.position);
+        g->pull[k] = tl_length(tl_v(s->force[0], s->force[1], s->force[2])) * step->sub;
+        g->stiff |= g->pull[k] * tl_max(g->give[0][k], g->give[1][k]) > TL_STIFF_PULL * step->inverse_sub;
+    }
+    const tl_row8 *velocities = tl_row_velocity(h);
+    g->mass[0][k] = velocities[g->a[k]].f[6], g->turns[0][k] = velocities[g->a[k]].f[7];
+    g->mass[1][k] = velocities[g->b[k]].f[6], g->turns[1][k] = velocities[g->b[k]].f[7];
     tl_row8 *moves = tl_row_moved(h);
     moves[g->a[k]].f[7] = moves[g->b[k]].f[7] = 1.0f;
 }
@@ -180,14 +206,14 @@ static uint32_t order_joints(tl_header *h) {
 }
 
 /* The open group of a joint's kind in its colour that still has a free lane. */
-static tl_joint_group *find_group(tl_header *h, uint32_t first, uint32_t joint) {
+static tl_joint_group *find_group(tl_header *h, uint32_t first, uint32_t joint, int linked) {
     const tl_joint_record *joints = tl_joints(h), *j = &joints[joint];
     const uint32_t *rows = tl_body_row(h);
     for (uint32_t i = h->joint_groups; i-- > first;) {
         tl_joint_group *g = &tl_joint_group_pool(h)[i];
         int shared = j->color == TL_COLORS && (holds_row(g->a, g->b, g->lanes, rows[j->body_a]) ||
                                                holds_row(g->a, g->b, g->lanes, rows[j->body_b]));
-        if (g->lanes < TL_LANES && !shared && same_kind(&joints[g->joint[0]], j)) {
+        if (g->lanes < TL_LANES && !shared && (g->linked > 0) == linked && tl_joints_alike(&joints[g->joint[0]], j)) {
             return g;
         }
         if (j->color == TL_COLORS || h->joint_groups - i > 16u) { /* looking far back costs more than a lane */
@@ -200,26 +226,31 @@ static tl_joint_group *find_group(tl_header *h, uint32_t first, uint32_t joint) 
 void tl_stage_joint_groups(tl_step *step) {
     tl_header *h = step->h;
     h->joint_groups = h->joint_rows = 0;
-    uint32_t count = order_joints(h), color = TL_NONE, first = 0, dropped = 0;
+    tl_linkages_find(step);
+    uint32_t count = order_joints(h), color = TL_NONE, first = h->joint_groups, dropped = 0;
     for (uint32_t k = 0; k < count; k++) {
-        uint32_t joint = tl_joint_order(h)[k];
+        uint32_t joint = tl_joint_order(h)[k], place = tl_linkage_of(h)[joint];
         const tl_joint_record *j = &tl_joints(h)[joint];
         if (j->color != color) {
             color = j->color;
             first = h->joint_groups;
         }
-        if (j->rows == 0) {
+        if (j->rows == 0 || place == TL_LINKAGE_READY) {
             continue;
         }
-        tl_joint_group *g = find_group(h, first, joint);
+        tl_joint_group *g = find_group(h, first, joint, place != TL_LINKAGE_NONE);
         if (!g) {
-            g = open_joint_group(h, j);
+            g = tl_joint_group_open(h, j);
         }
         if (!g) {
             dropped++;
             continue;
         }
-        fill_lane(step, g, joint);
+        if (place != TL_LINKAGE_NONE) {
+            g->linked = tl_linked_rows(j);
+            tl_linkage_places(h)[place] = (uint32_t)(g - tl_joint_group_pool(h)) * TL_LANES + g->lanes;
+        }
+        tl_joint_group_add(step, g, joint);
     }
     h->counters.joints_solved = count - dropped;
     h->counters.joints_sleeping = h->joints.used - h->awake_joints;

@@ -135,18 +135,32 @@ static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t co
 /* A pivot below this share of its diagonal entry stands for rows that say the same thing twice. */
 #define LEAST_PIVOT 1e-6f
 
+/* The matrix of rows i and j of a joint. */
+static inline tl_f8 joint_coupling(const joint_bodies *c, const tl_joint_group *g, const tl_joint_row *rows, uint32_t i,
+                                   uint32_t j) {
+    tl_f8 k = tl_f8_add(tl_f8_mul(c->ta, v8_dot(v8_load(rows[i].ja[0]), v8_load(rows[j].ja[0]))),
+                        tl_f8_mul(c->tb, v8_dot(v8_load(rows[i].jb[0]), v8_load(rows[j].jb[0]))));
+    if (is_linear_row(g->code[i]) && is_linear_row(g->code[j])) {
+        tl_f8 linear = tl_f8_add(c->ma, c->mb);
+        k = tl_f8_add(k, tl_f8_mul(linear, v8_dot(v8_load(rows[i].n[0]), v8_load(rows[j].n[0]))));
+    }
+    return k;
+}
+
+static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
+    for (uint32_t i = 0; i < g->linked; i++) {
+        for (uint32_t j = 0; j <= i; j++) {
+            tl_f8_store(g->matrix[i * (i + 1u) / 2u + j], joint_coupling(c, g, rows, i, j));
+        }
+    }
+}
+
 /* L D L^T of the equalities' matrix, row by row; the diagonal holds 1 / D (Golub and Van Loan, 4.1.2). */
 static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
-    tl_f8 linear = tl_f8_add(c->ma, c->mb), l[21], d[6];
+    tl_f8 l[21], d[6];
     for (uint32_t i = 0; i < g->fixed; i++) {
-        v8 ni = v8_load(rows[i].n[0]), jai = v8_load(rows[i].ja[0]), jbi = v8_load(rows[i].jb[0]);
         for (uint32_t j = 0; j <= i; j++) {
-            v8 ja = v8_load(rows[j].ja[0]), jb = v8_load(rows[j].jb[0]);
-            tl_f8 k = tl_f8_add(tl_f8_mul(c->ta, v8_dot(jai, ja)), tl_f8_mul(c->tb, v8_dot(jbi, jb)));
-            if (is_linear_row(g->code[i]) && is_linear_row(g->code[j])) {
-                k = tl_f8_add(k, tl_f8_mul(linear, v8_dot(ni, v8_load(rows[j].n[0]))));
-            }
-            tl_f8 whole = k;
+            tl_f8 k = joint_coupling(c, g, rows, i, j), whole = k;
             for (uint32_t m = 0; m < j; m++) { /* l[i][m] holds L D until the row is done */
                 tl_f8 other = j == i ? tl_f8_mul(l[i * (i + 1u) / 2u + m], d[m]) : l[j * (j + 1u) / 2u + m];
                 k = tl_f8_sub(k, tl_f8_mul(l[i * (i + 1u) / 2u + m], other));
@@ -164,7 +178,7 @@ static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl
         }
     }
     for (uint32_t i = 0; i < g->fixed * (g->fixed + 1u) / 2u; i++) {
-        tl_f8_store(g->factor[i], l[i]);
+        tl_f8_store(g->matrix[i], l[i]);
     }
 }
 
@@ -175,7 +189,14 @@ static void make_joint_rows(const tl_step *step, tl_joint_group *g) {
     for (uint32_t k = 0; k < g->rows; k++) {
         make_joint_row(&c, &rows[k], g->code[k], g->free_axis);
     }
-    factor_equalities(&c, g, rows);
+    tl_f8_store(g->turns[0], c.ta);
+    tl_f8_store(g->turns[1], c.tb);
+    if (g->linked) {
+        fill_matrix(&c, g, rows);
+        g->stale = 0xffu;
+    } else {
+        factor_equalities(&c, g, rows);
+    }
 }
 
 /* Impulses back to the joints, with the mean force and torque on b. */

@@ -41,12 +41,17 @@ static void solve_drive(const tl_step *step, pair_velocity *p, tl_joint_row *row
     joint_apply(p, row, linear, tl_f8_sub(now, old));
 }
 
-/* How far inside the nearer side of a range a joint is, and which side that is: 1 for the lower, -1 for the upper one.
- */
+/* The nearer side of a range: 1 for the lower, -1 for the upper one. */
+static inline tl_f8 range_sign(const tl_joint_row *row) {
+    tl_m8 low = tl_f8_gt(tl_f8_load(row->at_lower), tl_f8_zero());
+    return tl_f8_select(low, tl_f8_set1(1.0f), tl_f8_set1(-1.0f));
+}
+
+/* How far inside the nearer side of a range a joint is, and which side that is. */
 static inline tl_f8 range_gap(const tl_joint_row *row, tl_f8 *sign) {
     tl_m8 low = tl_f8_gt(tl_f8_load(row->at_lower), tl_f8_zero());
     tl_f8 error = tl_f8_load(row->error);
-    *sign = tl_f8_select(low, tl_f8_set1(1.0f), tl_f8_set1(-1.0f));
+    *sign = range_sign(row);
     return tl_f8_select(low, tl_f8_sub(error, tl_f8_load(row->lower)), tl_f8_sub(tl_f8_load(row->upper), error));
 }
 
@@ -74,13 +79,13 @@ static inline void solve_factored(const tl_joint_group *g, tl_f8 x[6]) {
     uint32_t n = g->fixed;
     for (uint32_t i = 0; i < n; i++) {
         for (uint32_t j = 0; j < i; j++) {
-            x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->factor[i * (i + 1u) / 2u + j]), x[j]));
+            x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->matrix[i * (i + 1u) / 2u + j]), x[j]));
         }
     }
     for (uint32_t i = n; i-- > 0;) {
-        x[i] = tl_f8_mul(x[i], tl_f8_load(g->factor[i * (i + 1u) / 2u + i]));
+        x[i] = tl_f8_mul(x[i], tl_f8_load(g->matrix[i * (i + 1u) / 2u + i]));
         for (uint32_t j = i + 1u; j < n; j++) {
-            x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->factor[j * (j + 1u) / 2u + i]), x[j]));
+            x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->matrix[j * (j + 1u) / 2u + i]), x[j]));
         }
     }
 }
@@ -107,6 +112,9 @@ static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
         tl_f8 x[6];
+        if (g->linked && g->rows == g->fixed) {
+            continue;
+        }
         load_pair(pushes, g->a, g->b, &p);
         for (uint32_t k = g->rows; k-- > g->fixed;) {
             if (g->code[k] / TL_ROW_TYPES != TL_ROW_RANGE) {
@@ -118,6 +126,10 @@ static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
             gap = tl_f8_add(gap, tl_f8_mul(sign, joint_speed(&p, &rows[k], linear)));
             tl_f8 push = tl_f8_mul(tl_f8_load(rows[k].mass), tl_f8_mul(share, tl_f8_max(tl_f8_neg(gap), zero)));
             joint_apply(&p, &rows[k], linear, tl_f8_mul(sign, tl_f8_select(soft, zero, push)));
+        }
+        if (g->linked) {
+            store_pair(pushes, g->a, g->b, &p);
+            continue;
         }
         for (uint32_t k = 0; k < g->fixed; k++) {
             tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
@@ -137,6 +149,9 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
+        if (g->linked && g->rows == g->fixed) {
+            continue;
+        }
         load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
         for (uint32_t k = g->rows; k-- > g->fixed;) {
             int linear = is_linear_row(g->code[k]);
@@ -146,7 +161,9 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
                 solve_range(step, &p, &rows[k], linear);
             }
         }
-        solve_equalities(g, rows, &p, before_move);
+        if (!g->linked) {
+            solve_equalities(g, rows, &p, before_move);
+        }
         store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
 }
@@ -183,9 +200,14 @@ static void turn_joints(const tl_step *step, uint32_t first, uint32_t last) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
+        if (step->again && !(g->far & TL_FAR_AGAIN)) {
+            continue;
+        }
         load_pair(befores, g->a, g->b, &p);
+        p.ta = tl_f8_load(g->turns[0]), p.tb = tl_f8_load(g->turns[1]);
         apply_all(g, rows, &p, 1.0f);
         make_joint_rows(step, g);
+        p.ta = tl_f8_load(g->turns[0]), p.tb = tl_f8_load(g->turns[1]);
         apply_all(g, rows, &p, -1.0f);
         store_pair(befores, g->a, g->b, &p);
     }

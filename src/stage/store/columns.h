@@ -81,6 +81,19 @@
     X(joint_order, uint32_t, JOINT, ROWS, STEP, 4)                                                                     \
     X(joint_group_pool, tl_joint_group, JOINTGROUP, ROWS, STEP, 4)                                                     \
     X(joint_row_pool, tl_joint_row, JOINTROW, ROWS, STEP, 4)                                                           \
+    X(linkages, tl_linkage, JOINT, ROWS, STEP, 4)                                                                      \
+    X(linkage_shapes, tl_linkage_shape, JOINT, ROWS, STEP, 4)                                                          \
+    X(linkage_nodes, tl_block_node, JOINT, ROWS, STEP, 4)                                                              \
+    X(linkage_blocks, tl_block, LINKBLOCK, ROWS, STEP, 4)                                                              \
+    X(linkage_values, float, LINKVALUE, ROWS, STEP, 4)                                                                 \
+    X(linkage_places, uint32_t, JOINT, ROWS, STEP, 4)                                                                  \
+    X(linkage_live, uint32_t, JOINT, SOLVE, STEP, 4)                                                                   \
+    X(linkage_order, uint32_t, JOINT, ROWS, STEP, 4)                                                                   \
+    X(linkage_of, uint32_t, JOINT, ROWS, STEP, 4)                                                                      \
+    X(linkage_rows, uint32_t, ROW, ROWS, STEP, 4)                                                                      \
+    X(row_stiffness, float, ROW, SOLVE, STEP, 4)                                                                       \
+    X(linkage_queue, uint32_t, ROW, ROWS, STEP, 4)                                                                     \
+    X(linkage_scratch, uint32_t, LINKSCRATCH, ROWS, STEP, 4)                                                           \
     /* what a step tells */                                                                                            \
     X(event_begin, talus_contact_event, EVENT, EVENTS, STEP, 4)                                                        \
     X(event_end, talus_contact_event, EVENT, EVENTS, STEP, 4)                                                          \

@@ -4,6 +4,7 @@
 #define TL_RECORDS_H
 
 #include "collide/collide.h"
+#include "dynamics/block_ldlt.h"
 #include "stage/store/rows.h"
 #include "talus/body.h"
 #include "talus/events.h"

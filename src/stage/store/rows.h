@@ -60,6 +60,7 @@ typedef struct tl_contact_group {
 } tl_contact_group;
 
 #define TL_JOINT_ROWS 12u
+#define TL_LINK_ROWS 6u
 
 /* One scalar row of eight joints. */
 typedef struct tl_joint_row {
@@ -77,16 +78,49 @@ typedef struct tl_joint_row {
     float at_lower[TL_LANES]; /* 1: the lower side of the range is the near one */
 } tl_joint_row;
 
+/* joint_group.far: an error is so large that taking it back leaves one; the group is pushed again. */
+enum { TL_FAR_NOW = 1, TL_FAR_AGAIN = 2 };
+
 typedef struct tl_joint_group {
     uint32_t a[TL_LANES], b[TL_LANES], joint[TL_LANES];
     uint32_t lanes, rows, fixed; /* joints, rows, and how many of the first rows are equalities */
     uint32_t first_row;          /* in joint_row_pool */
     uint32_t free_axis;          /* beside two locked angular ones */
-    uint32_t reserved[7];
+    uint32_t linked;             /* how many rows are solved with the linkage: the equalities, then hard ranges */
+    uint32_t stale;              /* bits of lanes: their linkage is to be factored anew */
+    uint32_t stiff;              /* linked: one pulls so hard that its bodies are to be looked at */
+    uint32_t far;                /* linked: TL_FAR_* */
+    uint32_t reserved[3];
     uint32_t code[TL_JOINT_ROWS];
     float pa[3][TL_LANES], qa[4][TL_LANES]; /* the joint's frame in a's mass frame */
     float pb[3][TL_LANES], qb[4][TL_LANES];
-    float factor[21][TL_LANES]; /* L D L^T of the equalities' matrix, by rows; D inverted */
+    float mass[2][TL_LANES], turns[2][TL_LANES]; /* of a and b: inverse mass, 1 if impulses turn it */
+    /* The matrix of the first rows, the lower half by rows. Of linked joints it takes in their hard ranges; of others
+     * it is the equalities' and stands as L D L^T with D inverted. */
+    float matrix[21][TL_LANES];
+    float active[TL_LINK_ROWS][TL_LANES]; /* linked: 1 for a row that holds now */
+    float x[TL_LINK_ROWS][TL_LANES];      /* linked: speeds or errors to be met, then impulses */
+    float give[2][TL_LANES]; /* m / (kg m^2): |arm| over the least moment of inertia across it, of a and b */
+    float pull[TL_LANES];    /* N s: the linear impulse of a sub-step */
 } tl_joint_group;
+
+/* A structure that linkages have in common. */
+typedef struct tl_linkage_shape {
+    uint32_t first_node, nodes, ends;
+    uint32_t first_joint; /* in linkage_order: the joints of the first of them, others as `next` has it */
+    uint32_t members, values;
+    uint32_t wide, open; /* members still to be put side by side, and the linkage that takes them, or TL_NONE */
+} tl_linkage_shape;
+
+/* Joints that hang together through bodies that can be moved, to be solved at once: one set of them, or eight alike
+ * side by side. */
+typedef struct tl_linkage {
+    uint32_t shape, first_joint; /* in linkage_shapes, linkage_order */
+    uint32_t first_node, nodes;  /* in linkage_nodes; linkages alike share them */
+    uint32_t first_place;        /* in linkage_places: a node's group times eight, plus its lane */
+    uint32_t values;             /* in linkage_values */
+    uint32_t lanes, wide;        /* sets in it; 1 if it is solved eight wide */
+    uint32_t far;                /* 1 if it is to be pushed again */
+} tl_linkage;
 
 #endif

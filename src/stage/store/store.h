@@ -20,6 +20,10 @@ typedef enum tl_column_id {
 /* Room for pairs that are apart, a contact. */
 #define TL_APART_PER_CONTACT 3u
 
+/* Blocks of linkages beside the diagonals and values of their factors, a joint. */
+#define TL_LINK_BLOCKS 4u
+#define TL_LINK_VALUES 256u
+
 /* The capacities that the table's `count` names. */
 typedef enum tl_count {
     TL_COUNT_BODY,
@@ -35,6 +39,9 @@ typedef enum tl_count {
     TL_COUNT_GROUP,
     TL_COUNT_JOINTGROUP,
     TL_COUNT_JOINTROW,
+    TL_COUNT_LINKBLOCK,
+    TL_COUNT_LINKVALUE,
+    TL_COUNT_LINKSCRATCH,
     TL_COUNT_EVENT,
     TL_COUNT_OF_STATE, /* worlds that agree in those above have one layout of the state */
     TL_COUNT_TALLY = TL_COUNT_OF_STATE,
@@ -80,10 +87,10 @@ typedef struct tl_header {
     uint32_t pairs_doubted; /* not 0: what awake pairs keep of how far they are apart (tl_pair.clear) is void */
     talus_counters counters;
     tl_event_counts events;
-    uint32_t groups, joint_groups, joint_rows; /* of the last step */
-    uint32_t frames, next_frame;               /* of the ring: in use, the place that the next step fills */
-    uint32_t ties, tallied;                    /* changes of what is tied and awake; as of the last tally */
-    uint32_t tallied_points, tallied_ties;     /* contact points; contacts and joints */
+    uint32_t groups, joint_groups, joint_rows, linkages; /* of the last step */
+    uint32_t frames, next_frame;                         /* of the ring: in use, the place that the next step fills */
+    uint32_t ties, tallied;                              /* changes of what is tied and awake; as of the last tally */
+    uint32_t tallied_points, tallied_ties;               /* contact points; contacts and joints */
 } tl_header;
 
 /* One accessor a column: tl_body_pose(h) and so on. */

@@ -1,0 +1,316 @@
+/* The arithmetic of block_ldlt.h for the width that the including file has chosen by width_one.h or width_eight.h. The
+ * diagonal blocks hold A's lower halves, blocks that are fill hold zero; afterwards the blocks hold L and the diagonal
+ * ones L with 1 / D on their diagonals. Of node j the first live[j] rows, 1 at least, are looked at. */
+#include "dynamics/block_ldlt.h"
+
+static inline uint32_t ldlt_at(uint32_t row, uint32_t column) { return row * (row + 1u) / 2u + column; }
+
+/* L D L^T of a diagonal block, row by row (Golub and Van Loan, Matrix Computations, 4.1.2). */
+static inline void ldlt_diagonal_of(float *a, uint32_t n) {
+    wf l[TL_BLOCK_ROWS * (TL_BLOCK_ROWS + 1u) / 2u];
+    for (uint32_t i = 0; i < n; i++) {
+        wf w[TL_BLOCK_ROWS], d = wf_load(a + ldlt_at(i, i) * TL_WIDTH); /* w: L D of row i */
+        for (uint32_t j = 0; j < i; j++) {
+            w[j] = wf_load(a + ldlt_at(i, j) * TL_WIDTH);
+            for (uint32_t m = 0; m < j; m++) {
+                w[j] = wf_sub(w[j], wf_mul(w[m], l[ldlt_at(j, m)]));
+            }
+        }
+        for (uint32_t j = 0; j < i; j++) {
+            l[ldlt_at(i, j)] = wf_mul(w[j], l[ldlt_at(j, j)]);
+            d = wf_sub(d, wf_mul(l[ldlt_at(i, j)], w[j]));
+            wf_store(a + ldlt_at(i, j) * TL_WIDTH, l[ldlt_at(i, j)]);
+        }
+        l[ldlt_at(i, i)] = wf_inverse(d);
+        wf_store(a + ldlt_at(i, i) * TL_WIDTH, l[ldlt_at(i, i)]);
+    }
+}
+
+static void ldlt_diagonal(float *a, uint32_t n) {
+    switch (n) {
+    case 3:
+        ldlt_diagonal_of(a, 3u);
+        break;
+    case 5:
+        ldlt_diagonal_of(a, 5u);
+        break;
+    default:
+        ldlt_diagonal_of(a, n);
+    }
+}
+
+/* A block below a diagonal d becomes L, or stays L D where `whole`, and goes into the diagonal t that its rows belong
+ * to: row by row, with what is needed of d at hand. */
+static inline void ldlt_couple_of(const float *d, float *b, float *t, uint32_t rows, uint32_t n, uint32_t stride,
+                                  int whole) {
+    wf l[TL_BLOCK_ROWS * TL_BLOCK_ROWS], factor[TL_BLOCK_ROWS * (TL_BLOCK_ROWS + 1u) / 2u];
+    for (uint32_t i = 0; i < n * (n + 1u) / 2u; i++) {
+        factor[i] = wf_load(d + i * TL_WIDTH);
+    }
+    for (uint32_t r = 0; r < rows; r++, b += stride * TL_WIDTH) {
+        wf w[TL_BLOCK_ROWS];
+        for (uint32_t c = 0; c < n; c++) {
+            w[c] = wf_load(b + c * TL_WIDTH);
+            for (uint32_t m = 0; m < c; m++) {
+                w[c] = wf_sub(w[c], wf_mul(w[m], factor[ldlt_at(c, m)]));
+            }
+            l[r * n + c] = wf_mul(w[c], factor[ldlt_at(c, c)]);
+        }
+        for (uint32_t c = 0; c < n; c++) {
+            wf_store(b + c * TL_WIDTH, whole ? w[c] : l[r * n + c]);
+        }
+        for (uint32_t c = 0; c <= r; c++) {
+            wf sum = wf_mul(w[0], l[c * n]);
+            for (uint32_t m = 1; m < n; m++) {
+                sum = wf_mad(sum, w[m], l[c * n + m]);
+            }
+            wf_store(t + ldlt_at(r, c) * TL_WIDTH, wf_sub(wf_load(t + ldlt_at(r, c) * TL_WIDTH), sum));
+        }
+    }
+}
+
+/* The usual sizes are compiled on their own. */
+static void ldlt_couple(const float *d, float *b, float *t, uint32_t rows, uint32_t n, uint32_t stride, int whole) {
+    switch (rows * 8u + n) {
+    case 3u * 8u + 3u:
+        ldlt_couple_of(d, b, t, 3u, 3u, stride, whole);
+        break;
+    case 5u * 8u + 5u:
+        ldlt_couple_of(d, b, t, 5u, 5u, stride, whole);
+        break;
+    case 6u * 8u + 6u:
+        ldlt_couple_of(d, b, t, 6u, 6u, stride, whole);
+        break;
+    default:
+        ldlt_couple_of(d, b, t, rows, n, stride, whole);
+    }
+}
+
+/* l = b D^-1 for a whole block. */
+static inline void ldlt_scale(const float *d, const float *b, wf *l, uint32_t rows, uint32_t n, uint32_t stride) {
+    for (uint32_t c = 0; c < n; c++) {
+        wf inverse = wf_load(d + ldlt_at(c, c) * TL_WIDTH);
+        for (uint32_t r = 0; r < rows; r++) {
+            l[r * n + c] = wf_mul(wf_load(b + (r * stride + c) * TL_WIDTH), inverse);
+        }
+    }
+}
+
+/* A block of the factor: its live rows, and how far they stand apart. */
+typedef struct ldlt_view {
+    float *v;
+    uint32_t rows, stride;
+} ldlt_view;
+
+/* t -= w l^T over n columns, l being packed. */
+static inline void ldlt_take_of(ldlt_view t, ldlt_view w, const wf *l, uint32_t rows, uint32_t columns, uint32_t n) {
+    for (uint32_t r = 0; r < rows; r++) {
+        wf row[TL_BLOCK_ROWS];
+        for (uint32_t m = 0; m < n; m++) {
+            row[m] = wf_load(w.v + (r * w.stride + m) * TL_WIDTH);
+        }
+        for (uint32_t c = 0; c < columns; c++) {
+            float *at = t.v + (r * t.stride + c) * TL_WIDTH;
+            wf sum = wf_mul(row[0], l[c * n]);
+            for (uint32_t m = 1; m < n; m++) {
+                sum = wf_mad(sum, row[m], l[c * n + m]);
+            }
+            wf_store(at, wf_sub(wf_load(at), sum));
+        }
+    }
+}
+
+static void ldlt_take(ldlt_view t, ldlt_view w, const wf *l, uint32_t columns, uint32_t n) {
+    if (w.rows == 3u && columns == 3u && n == 3u) {
+        ldlt_take_of(t, w, l, 3u, 3u, 3u);
+    } else if (w.rows == 5u && columns == 5u && n == 5u) {
+        ldlt_take_of(t, w, l, 5u, 5u, 5u);
+    } else {
+        ldlt_take_of(t, w, l, w.rows, columns, n);
+    }
+}
+
+/* Takes column j, whose blocks are whole, out of the blocks that couple those it is coupled to. */
+static void ldlt_hand_up(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t j, float *v) {
+    const tl_block_node *column = &node[j];
+    const tl_block *b = block + column->first;
+    uint32_t n = live[j];
+    for (uint32_t k = 0; k < column->blocks; k++) {
+        const tl_block_node *to = &node[b[k].node];
+        const tl_block *target = block + to->first;
+        ldlt_view w = {v + b[k].values * TL_WIDTH, live[b[k].node], column->rows};
+        wf l[TL_BLOCK_ROWS * TL_BLOCK_ROWS];
+        ldlt_scale(v + column->diagonal * TL_WIDTH, w.v, l, w.rows, n, w.stride);
+        for (uint32_t i = k + 1u; i < column->blocks; i++) {
+            while (target->node != b[i].node) {
+                target++;
+            }
+            ldlt_view from = {v + b[i].values * TL_WIDTH, live[b[i].node], column->rows};
+            ldlt_view into = {v + target->values * TL_WIDTH, from.rows, to->rows};
+            ldlt_take(into, from, l, w.rows, n);
+        }
+        for (uint32_t r = 0; r < w.rows; r++) {
+            for (uint32_t c = 0; c < n; c++) {
+                wf_store(w.v + (r * w.stride + c) * TL_WIDTH, l[r * n + c]);
+            }
+        }
+    }
+}
+
+static void ldlt_factor(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                        float *v) {
+    wf raise = wf_set1(1.0f + TL_BLOCK_RAISE);
+    for (uint32_t j = 0; j < nodes; j++) {
+        float *d = v + node[j].diagonal * TL_WIDTH;
+        for (uint32_t i = 0; i < live[j]; i++) {
+            float *at = d + ldlt_at(i, i) * TL_WIDTH;
+            wf_store(at, wf_mul(wf_load(at), raise));
+        }
+    }
+    for (uint32_t j = 0; j < nodes; j++) {
+        float *d = v + node[j].diagonal * TL_WIDTH;
+        int several = node[j].blocks > 1u;
+        ldlt_diagonal(d, live[j]);
+        for (uint32_t k = 0; k < node[j].blocks; k++) {
+            const tl_block *b = &block[node[j].first + k];
+            ldlt_couple(d, v + b->values * TL_WIDTH, v + node[b->node].diagonal * TL_WIDTH, live[b->node], live[j],
+                        node[j].rows, several);
+        }
+        if (several) {
+            ldlt_hand_up(node, block, live, j, v);
+        }
+    }
+}
+
+/* x becomes L^-1 x for a node, and y of another less what that is to it by the block l. */
+static inline void ldlt_forward_of(const float *d, float *x, uint32_t n) {
+    wf y[TL_BLOCK_ROWS];
+    for (uint32_t i = 0; i < n; i++) {
+        y[i] = wf_load(x + i * TL_WIDTH);
+        for (uint32_t m = 0; m < i; m++) {
+            y[i] = wf_sub(y[i], wf_mul(wf_load(d + ldlt_at(i, m) * TL_WIDTH), y[m]));
+        }
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        wf_store(x + i * TL_WIDTH, y[i]);
+    }
+}
+
+static inline void ldlt_pass_of(const float *l, const float *x, float *y, uint32_t rows, uint32_t n, uint32_t stride) {
+    wf from[TL_BLOCK_ROWS];
+    for (uint32_t m = 0; m < n; m++) {
+        from[m] = wf_load(x + m * TL_WIDTH);
+    }
+    for (uint32_t r = 0; r < rows; r++, l += stride * TL_WIDTH) {
+        wf sum = wf_mul(wf_load(l), from[0]);
+        for (uint32_t m = 1; m < n; m++) {
+            sum = wf_mad(sum, wf_load(l + m * TL_WIDTH), from[m]);
+        }
+        wf_store(y + r * TL_WIDTH, wf_sub(wf_load(y + r * TL_WIDTH), sum));
+    }
+}
+
+/* x less what y is to it by the block l. */
+static inline void ldlt_pass_back_of(const float *l, const float *y, float *x, uint32_t rows, uint32_t n,
+                                     uint32_t stride) {
+    wf to[TL_BLOCK_ROWS];
+    for (uint32_t i = 0; i < n; i++) {
+        to[i] = wf_load(x + i * TL_WIDTH);
+    }
+    for (uint32_t r = 0; r < rows; r++, l += stride * TL_WIDTH) {
+        wf by = wf_load(y + r * TL_WIDTH);
+        for (uint32_t i = 0; i < n; i++) {
+            to[i] = wf_sub(to[i], wf_mul(wf_load(l + i * TL_WIDTH), by));
+        }
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        wf_store(x + i * TL_WIDTH, to[i]);
+    }
+}
+
+/* x becomes L^-T x for a node. */
+static inline void ldlt_back_of(const float *d, float *x, uint32_t n) {
+    wf y[TL_BLOCK_ROWS];
+    for (uint32_t i = n; i-- > 0;) {
+        y[i] = wf_load(x + i * TL_WIDTH);
+        for (uint32_t m = i + 1u; m < n; m++) {
+            y[i] = wf_sub(y[i], wf_mul(wf_load(d + ldlt_at(m, i) * TL_WIDTH), y[m]));
+        }
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        wf_store(x + i * TL_WIDTH, y[i]);
+    }
+}
+
+static void ldlt_forward(const float *d, float *x, uint32_t n) {
+    switch (n) {
+    case 3:
+        ldlt_forward_of(d, x, 3u);
+        break;
+    case 5:
+        ldlt_forward_of(d, x, 5u);
+        break;
+    default:
+        ldlt_forward_of(d, x, n);
+    }
+}
+
+static void ldlt_back(const float *d, float *x, uint32_t n) {
+    switch (n) {
+    case 3:
+        ldlt_back_of(d, x, 3u);
+        break;
+    case 5:
+        ldlt_back_of(d, x, 5u);
+        break;
+    default:
+        ldlt_back_of(d, x, n);
+    }
+}
+
+static void ldlt_pass(const float *l, const float *x, float *y, uint32_t rows, uint32_t n, uint32_t stride) {
+    if (rows == 3u && n == 3u) {
+        ldlt_pass_of(l, x, y, 3u, 3u, stride);
+    } else if (rows == 5u && n == 5u) {
+        ldlt_pass_of(l, x, y, 5u, 5u, stride);
+    } else {
+        ldlt_pass_of(l, x, y, rows, n, stride);
+    }
+}
+
+static void ldlt_pass_back(const float *l, const float *y, float *x, uint32_t rows, uint32_t n, uint32_t stride) {
+    if (rows == 3u && n == 3u) {
+        ldlt_pass_back_of(l, y, x, 3u, 3u, stride);
+    } else if (rows == 5u && n == 5u) {
+        ldlt_pass_back_of(l, y, x, 5u, 5u, stride);
+    } else {
+        ldlt_pass_back_of(l, y, x, rows, n, stride);
+    }
+}
+
+/* The nodes' right-hand sides become the solution. */
+static void ldlt_solve(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                       float *v) {
+    for (uint32_t j = 0; j < nodes; j++) {
+        float *x = v + node[j].x * TL_WIDTH;
+        ldlt_forward(v + node[j].diagonal * TL_WIDTH, x, live[j]);
+        for (uint32_t k = 0; k < node[j].blocks; k++) {
+            const tl_block *b = &block[node[j].first + k];
+            ldlt_pass(v + b->values * TL_WIDTH, x, v + node[b->node].x * TL_WIDTH, live[b->node], live[j],
+                      node[j].rows);
+        }
+    }
+    for (uint32_t j = nodes; j-- > 0;) {
+        const float *d = v + node[j].diagonal * TL_WIDTH;
+        float *x = v + node[j].x * TL_WIDTH;
+        for (uint32_t i = 0; i < live[j]; i++) {
+            wf_store(x + i * TL_WIDTH, wf_mul(wf_load(x + i * TL_WIDTH), wf_load(d + ldlt_at(i, i) * TL_WIDTH)));
+        }
+        for (uint32_t k = 0; k < node[j].blocks; k++) {
+            const tl_block *b = &block[node[j].first + k];
+            ldlt_pass_back(v + b->values * TL_WIDTH, v + node[b->node].x * TL_WIDTH, x, live[b->node], live[j],
+                           node[j].rows);
+        }
+        ldlt_back(d, x, live[j]);
+    }
+}

@@ -1,0 +1,27 @@
+/* Groups of joints as the rows stage makes them. */
+#ifndef TL_GROUPS_H
+#define TL_GROUPS_H
+
+#include "stage/stages.h"
+
+/* Whether two joints have the same rows and so may stand in one group. */
+int tl_joints_alike(const tl_joint_record *a, const tl_joint_record *b);
+
+/* An empty group for joints like j, or null if there is no room. */
+tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j);
+
+/* Puts a joint into the next lane of a group. */
+void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint);
+
+/* What linkage_of says of a joint beside its place in a linkage. */
+#define TL_LINKAGE_NONE 0xffffffffu  /* it is in none */
+#define TL_LINKAGE_READY 0xfffffffeu /* its group is made */
+
+/* How many rows of a joint are solved with the linkage that it is in: equalities, then ranges. */
+uint32_t tl_linked_rows(const tl_joint_record *j);
+
+/* Finds the linkages among the awake joints, with the groups of those that are solved eight wide; linkage_of then has
+ * for every awake joint its place, TL_LINKAGE_NONE or TL_LINKAGE_READY. O(awake joints + blocks). */
+void tl_linkages_find(tl_step *step);
+
+#endif

@@ -1,0 +1,384 @@
+/* Linkages: joints that hang together through bodies that can be moved, in an order in which they are solved at once.
+ *
+ * Bodies are visited breadth first from one of them, and their joints taken in the reverse of the order in which they
+ * were met: in a tree every joint is then taken after those beyond it, so that the factor is no fuller than the bodies'
+ * joints make it, and in a ring two columns meet. Linkages of one structure are solved eight side by side. */
+#include <string.h>
+
+#include "stage/row/groups.h"
+
+/* Fewer alike than this are solved one by one: eight wide costs as much as several of them. */
+#define LEAST_WIDE 4u
+/* How many structures a linkage is compared with: beyond that looking costs more than it gives. */
+#define SHAPES_COMPARED 8u
+
+uint32_t tl_linked_rows(const tl_joint_record *j) {
+    uint32_t rows = j->fixed;
+    while (rows < j->rows && rows < TL_LINK_ROWS && j->code[rows] / TL_ROW_TYPES == TL_ROW_RANGE) {
+        rows++;
+    }
+    return rows;
+}
+
+/* The row of a body that impulses can move, else 0. */
+static uint32_t free_row(const tl_header *h, uint32_t body) {
+    uint32_t row = tl_body_row(h)[body];
+    const float *v = tl_row_velocity(h)[row].f;
+    return row && (v[6] > 0.0f || v[7] > 0.0f) ? row : 0u;
+}
+
+/* The joints that hang together with `joint`, into linkage_order from `first` on; linkage_rows numbers their bodies
+ * from 1. Returns how many joints there are. */
+static uint32_t gather(tl_header *h, uint32_t joint, uint32_t first, uint32_t *ends) {
+    const tl_joint_record *joints = tl_joints(h);
+    uint32_t *of = tl_linkage_of(h), *number = tl_linkage_rows(h), *queue = tl_linkage_queue(h);
+    uint32_t *order = tl_linkage_order(h) + first, count = 0, head = 0, tail = 0;
+    uint32_t row = free_row(h, joints[joint].body_a);
+    queue[tail++] = row ? row : free_row(h, joints[joint].body_b);
+    number[queue[0]] = 1u;
+    while (head < tail) {
+        uint32_t body = tl_awake_body(h)[queue[head++] - 1u];
+        for (uint32_t link = tl_bodies(h)[body].first_joint; link != TL_NONE;) {
+            const tl_joint_record *j = &joints[link / 2u];
+            uint32_t other = free_row(h, link & 1u ? j->body_a : j->body_b);
+            if (j->fixed > 0 && of[link / 2u] == TL_LINKAGE_NONE) {
+                of[link / 2u] = TL_LINKAGE_READY;
+                order[count++] = link / 2u;
+                if (other && !number[other]) {
+                    queue[tail++] = other;
+                    number[other] = tail;
+                }
+            }
+            link = j->next[link & 1u];
+        }
+    }
+    *ends = tail;
+    return count;
+}
+
+static uint32_t end_of(const tl_header *h, uint32_t body) {
+    uint32_t row = free_row(h, body);
+    return row ? tl_linkage_rows(h)[row] - 1u : TL_BLOCK_FREE;
+}
+
+/* Whether the joints from `first` on in linkage_order are tied as those of a shape are. */
+static int has_shape(const tl_header *h, const tl_linkage_shape *s, uint32_t first, uint32_t count, uint32_t ends) {
+    const tl_joint_record *joints = tl_joints(h);
+    const uint32_t *order = tl_linkage_order(h);
+    if (s->nodes != count || s->ends != ends) {
+        return 0;
+    }
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_joint_record *j = &joints[order[first + k]];
+        const tl_block_node *node = &tl_linkage_nodes(h)[s->first_node + count - 1u - k];
+        if (node->end[0] != end_of(h, j->body_a) || node->end[1] != end_of(h, j->body_b) ||
+            !tl_joints_alike(j, &joints[order[s->first_joint + k]])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+typedef struct finder {
+    tl_header *h;
+    uint32_t shapes, nodes, blocks, linkages, joints, values, places;
+} finder;
+
+/* The structure of the joints from `first` on; without values where it would be too full. */
+static uint32_t shape_of(finder *f, uint32_t first, uint32_t count, uint32_t ends) {
+    tl_header *h = f->h;
+    tl_linkage_shape *shapes = tl_linkage_shapes(h);
+    for (uint32_t k = 1; k <= f->shapes && k <= SHAPES_COMPARED; k++) {
+        if (has_shape(h, &shapes[f->shapes - k], first, count, ends)) {
+            return f->shapes - k;
+        }
+    }
+    tl_linkage_shape *s = &shapes[f->shapes];
+    memset(s, 0, sizeof *s);
+    s->first_node = f->nodes, s->nodes = count, s->ends = ends, s->first_joint = first;
+    tl_block_node *nodes = tl_linkage_nodes(h) + f->nodes;
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_joint_record *j = &tl_joints(h)[tl_linkage_order(h)[first + count - 1u - k]];
+        nodes[k].end[0] = end_of(h, j->body_a), nodes[k].end[1] = end_of(h, j->body_b);
+        nodes[k].rows = tl_linked_rows(j);
+    }
+    uint32_t room = count * TL_LINK_BLOCKS;
+    uint32_t used =
+        tl_block_plan(nodes, count, ends, tl_linkage_blocks(h), f->blocks, room, tl_linkage_scratch(h), &s->values);
+    if (used == TL_BLOCK_FREE) {
+        s->values = 0;
+    } else {
+        f->blocks += used;
+    }
+    f->nodes += count;
+    return f->shapes++;
+}
+
+/* The joints from `first` on are solved one by one. */
+static void leave(tl_header *h, uint32_t first, uint32_t count) {
+    for (uint32_t k = 0; k < count; k++) {
+        tl_linkage_of(h)[tl_linkage_order(h)[first + k]] = TL_LINKAGE_NONE;
+    }
+}
+
+/* What is short, slow and not of too unlike masses holds together with one joint solved at a time. */
+#define EASY_JOINTS 16u
+#define EASY_RATIO 40.0f /* of masses */
+#define EASY_SPEED 0.5f  /* m/s: of a body's farthest point */
+
+static int is_easy(const tl_header *h, const uint32_t *order, uint32_t count) {
+    float least = 3.0e38f, most = 0.0f;
+    if (count > EASY_JOINTS) {
+        return 0;
+    }
+    for (uint32_t k = 0; k < 2u * count; k++) {
+        const tl_joint_record *j = &tl_joints(h)[order[k / 2u]];
+        uint32_t body = k & 1u ? j->body_b : j->body_a, row = free_row(h, body);
+        const tl_row8 *v = &tl_body_velocity(h)[body];
+        float mass = tl_row_velocity(h)[row].f[6];
+        if (row) {
+            float speed = tl_length(tl_row_xyz(v)) + tl_length(tl_row_345(v)) * tl_body_inertias(h)[body].reach;
+            if (speed > EASY_SPEED) {
+                return 0;
+            }
+            least = tl_min(least, mass), most = tl_max(most, mass);
+        }
+    }
+    return most < EASY_RATIO * least;
+}
+
+/* What is torn apart or whirls is beyond what a linear solve can tell: taken back at once, its errors would fling it.
+ */
+#define WILD_SHARE 0.25f /* of the bodies' reach: how far off a joint may be */
+#define WILD_TURN 0.5f   /* rad in a sub-step: where the curve of an anchor's path is no guide any more */
+
+/* m: how far the locked rows of a joint are off. */
+static float error_of(const tl_header *h, const tl_joint_record *j) {
+    talus_pose a = tl_row_pose_of(&tl_body_pose(h)[j->body_a]), b = tl_row_pose_of(&tl_body_pose(h)[j->body_b]);
+    a = tl_pose_mul(&a, &j->place_a);
+    talus_vec3 d = tl_pose_point_back(&a, tl_pose_point(&b, j->place_b.position));
+    const float along[3] = {tl_abs(d.x), tl_abs(d.y), tl_abs(d.z)};
+    float most = 0.0f;
+    for (uint32_t k = 0; k < j->fixed; k++) {
+        uint32_t type = j->code[k] % TL_ROW_TYPES;
+        if (type < TL_ROW_ANGULAR) {
+            most = tl_max(most, along[type - TL_ROW_LINEAR]);
+        } else if (type == TL_ROW_DISTANCE) {
+            most = tl_max(most, tl_abs(tl_length(d) - j->param[k].lower));
+        }
+    }
+    return most;
+}
+
+static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
+    const tl_header *h = step->h;
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_joint_record *j = &tl_joints(h)[order[k]];
+        const tl_row8 *a = &tl_body_velocity(h)[j->body_a], *b = &tl_body_velocity(h)[j->body_b];
+        float reach = 0.0f;
+        reach += free_row(h, j->body_a) ? tl_body_inertias(h)[j->body_a].reach : 0.0f;
+        reach += free_row(h, j->body_b) ? tl_body_inertias(h)[j->body_b].reach : 0.0f;
+        float spin = tl_max(tl_length(tl_row_345(a)), tl_length(tl_row_345(b)));
+        if (!(spin * step->sub < WILD_TURN) || !(error_of(h, j) < WILD_SHARE * reach)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void find_components(const tl_step *step, finder *f) {
+    tl_header *h = f->h;
+    const uint32_t *awake = tl_awake_joint(h);
+    uint32_t *of = tl_linkage_of(h), *order = tl_linkage_order(h);
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        const tl_joint_record *j = &tl_joints(h)[awake[k]];
+        if (of[awake[k]] != TL_LINKAGE_NONE || j->fixed == 0 || !(free_row(h, j->body_a) || free_row(h, j->body_b))) {
+            continue;
+        }
+        uint32_t ends, count = gather(h, awake[k], f->joints, &ends);
+        if (count > 1u && (is_easy(h, order + f->joints, count) || is_wild(step, order + f->joints, count))) {
+            leave(h, f->joints, count);
+        } else if (count > 1u) {
+            uint32_t shape = shape_of(f, f->joints, count, ends);
+            tl_linkage *l = &tl_linkages(h)[f->linkages++];
+            l->shape = shape, l->first_joint = f->joints, l->lanes = 1u;
+            tl_linkage_shapes(h)[shape].members++;
+            f->joints += count;
+        } else {
+            of[order[f->joints]] = TL_LINKAGE_NONE;
+        }
+    }
+}
+
+/* Opens the groups of a linkage that is solved eight wide, one a node. */
+static int open_groups(finder *f, tl_linkage *l, const tl_linkage_shape *s) {
+    tl_header *h = f->h;
+    uint32_t groups = h->joint_groups;
+    for (uint32_t k = 0; k < s->nodes; k++) {
+        const tl_joint_record *j = &tl_joints(h)[tl_linkage_order(h)[l->first_joint + s->nodes - 1u - k]];
+        tl_joint_group *g = tl_joint_group_open(h, j);
+        if (!g) {
+            return 0;
+        }
+        g->linked = tl_linked_rows(j);
+        tl_linkage_places(h)[l->first_place + k] = (groups + k) * TL_LANES;
+    }
+    return 1;
+}
+
+static void fill_groups(tl_step *step, const tl_linkage *l, const tl_linkage_shape *s, uint32_t first_joint) {
+    tl_header *h = step->h;
+    for (uint32_t k = 0; k < s->nodes; k++) {
+        uint32_t group = tl_linkage_places(h)[l->first_place + k] / TL_LANES;
+        tl_joint_group_add(step, &tl_joint_group_pool(h)[group], tl_linkage_order(h)[first_joint + s->nodes - 1u - k]);
+    }
+}
+
+/* A place for a linkage's values and nodes; 0 if there is no room. */
+static int settle(finder *f, tl_linkage *l, const tl_linkage_shape *s, uint32_t width) {
+    uint32_t values = (s->values * width + TL_LANES - 1u) / TL_LANES * TL_LANES;
+    if (s->values == 0 || f->values + values > f->h->capacity[TL_COUNT_LINKVALUE]) {
+        return 0;
+    }
+    l->first_node = s->first_node, l->nodes = s->nodes;
+    l->values = f->values, l->first_place = f->places;
+    f->values += values, f->places += s->nodes;
+    return 1;
+}
+
+/* Members of a shape that are solved eight wide, as many as fill groups well. */
+static uint32_t wide_members(uint32_t members) {
+    uint32_t rest = members % TL_LANES;
+    return rest >= LEAST_WIDE ? members : members - rest;
+}
+
+/* The linkages in their final places: what is alike goes side by side, the rest keeps its joints for the coloured
+ * groups. */
+static void place_linkages(tl_step *step, finder *f) {
+    tl_header *h = step->h;
+    tl_linkage *linkages = tl_linkages(h);
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < f->shapes; i++) {
+        tl_linkage_shapes(h)[i].wide = wide_members(tl_linkage_shapes(h)[i].members);
+        tl_linkage_shapes(h)[i].open = TL_NONE;
+    }
+    for (uint32_t i = 0; i < f->linkages; i++) {
+        tl_linkage l = linkages[i];
+        tl_linkage_shape *s = &tl_linkage_shapes(h)[l.shape];
+        if (s->wide > 0 && s->open != TL_NONE && linkages[s->open].lanes < TL_LANES) {
+            s->wide--;
+            linkages[s->open].lanes++;
+            fill_groups(step, &linkages[s->open], s, l.first_joint);
+            continue;
+        }
+        if (!settle(f, &l, s, s->wide > 0 ? TL_LANES : 1u) || (s->wide > 0 && !open_groups(f, &l, s))) {
+            s->wide -= s->wide > 0;
+            leave(h, l.first_joint, s->nodes);
+            h->counters.joints_apart += s->nodes;
+            continue;
+        }
+        if (s->wide > 0) {
+            s->wide--;
+            s->open = kept;
+            fill_groups(step, &l, s, l.first_joint);
+        } else {
+            for (uint32_t k = 0; k < s->nodes; k++) {
+                tl_linkage_of(h)[tl_linkage_order(h)[l.first_joint + s->nodes - 1u - k]] = l.first_place + k;
+            }
+        }
+        l.wide = s->open == kept;
+        linkages[kept++] = l;
+    }
+    h->linkages = h->counters.linkages = kept;
+}
+
+/* Whether all awake joints are sure to get a row. */
+static int rows_suffice(const tl_header *h) {
+    uint32_t rows = 0;
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        rows += tl_joints(h)[tl_awake_joint(h)[k]].rows;
+    }
+    return rows <= h->capacity[TL_COUNT_JOINTROW];
+}
+
+void tl_linkages_find(tl_step *step) {
+    tl_header *h = step->h;
+    finder f = {h, 0, 0, 0, 0, 0, 0, 0};
+    h->linkages = 0;
+    h->counters.joints_apart = h->counters.linkages = 0;
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        tl_linkage_of(h)[tl_awake_joint(h)[k]] = TL_LINKAGE_NONE;
+    }
+    if (h->awake_joints < 2u || !rows_suffice(h)) {
+        return;
+    }
+    memset(tl_linkage_rows(h), 0, step->rows * sizeof(uint32_t));
+    find_components(step, &f);
+    place_linkages(step, &f);
+}
+
+/* --- stiffness -------------------------------------------------------------------------------- */
+
+static void set_turns(tl_header *h, uint32_t row, float turns) {
+    if (tl_row_velocity(h)[row].f[7] > 0.0f) {
+        tl_row_velocity(h)[row].f[7] = tl_row_before(h)[row].f[7] = tl_row_push(h)[row].f[7] = turns;
+    }
+}
+
+void tl_stage_stiffness(tl_step *step) {
+    tl_header *h = step->h;
+    float *stiffness = tl_row_stiffness(h);
+    const tl_joint_group *groups = tl_joint_group_pool(h);
+    uint32_t stiff = 0;
+    for (uint32_t i = 0; i < h->joint_groups && h->linkages; i++) {
+        stiff |= groups[i].stiff;
+    }
+    if (!stiff && !step->stiff) {
+        return;
+    }
+    memset(stiffness, 0, step->rows * sizeof(float));
+    for (uint32_t i = 0; i < h->joint_groups; i++) {
+        for (uint32_t k = 0; k < groups[i].lanes && groups[i].linked; k++) {
+            stiffness[groups[i].a[k]] += groups[i].pull[k] * groups[i].give[0][k] * step->sub;
+            stiffness[groups[i].b[k]] += groups[i].pull[k] * groups[i].give[1][k] * step->sub;
+        }
+    }
+    step->stiff = 0;
+    for (uint32_t row = 1; row <= h->awake_bodies; row++) {
+        int beyond = stiffness[row] > TL_MOST_STIFF;
+        step->stiff |= beyond;
+        set_turns(h, row, beyond ? TL_MOST_STIFF / stiffness[row] : 1.0f);
+    }
+}
+
+/* --- what is far -------------------------------------------------------------------------------- */
+
+static uint32_t far_of(const tl_header *h, const tl_linkage *l) {
+    uint32_t far = 0;
+    for (uint32_t k = 0; k < l->nodes; k++) {
+        far |= tl_joint_group_pool(h)[tl_linkage_places(h)[l->first_place + k] / TL_LANES].far & TL_FAR_NOW;
+    }
+    return far;
+}
+
+static void set_far(const tl_header *h, const tl_linkage *l, uint32_t far) {
+    for (uint32_t k = 0; k < l->nodes; k++) {
+        tl_joint_group_pool(h)[tl_linkage_places(h)[l->first_place + k] / TL_LANES].far = far;
+    }
+}
+
+int tl_stage_far_linkages(tl_header *h) {
+    uint32_t any = 0, shared = 0;
+    for (uint32_t i = 0; i < h->linkages; i++) {
+        tl_linkage *l = &tl_linkages(h)[i];
+        l->far = far_of(h, l);
+        any |= l->far;
+        shared |= l->wide ? 0u : l->far;
+    }
+    for (uint32_t i = 0; i < h->linkages; i++) {
+        tl_linkage *l = &tl_linkages(h)[i];
+        l->far = l->wide ? l->far : shared;
+        set_far(h, l, l->far ? (uint32_t)TL_FAR_AGAIN : 0u);
+    }
+    return any != 0;
+}

@@ -1,0 +1,161 @@
+/* Linked joints, eight at a time: what their linkage has to meet, and what comes of it. */
+#include "stage/solve/linkages.inl"
+
+static inline tl_m8 is_hard(const tl_joint_row *row) {
+    return tl_f8_eq(tl_f8_add(tl_f8_load(row->stiffness), tl_f8_load(row->damping)), tl_f8_zero());
+}
+
+/* What a row has to meet: its speed against the one it seeks, and the give of the raised diagonal. */
+static inline tl_f8 speed_to_meet(const tl_joint_group *g, const tl_joint_row *rows, uint32_t k,
+                                  const pair_velocity *p) {
+    tl_f8 give = tl_f8_mul(tl_f8_set1(TL_BLOCK_RAISE), tl_f8_load(g->matrix[k * (k + 1u) / 2u + k]));
+    return tl_f8_mad(joint_speed(p, &rows[k], is_linear_row(g->code[k])), give, tl_f8_load(rows[k].impulse));
+}
+
+static inline void set_active(tl_joint_group *g, uint32_t k, tl_m8 holds) {
+    tl_f8 now = tl_f8_and_mask(holds, tl_f8_set1(1.0f));
+    g->stale |= tl_m8_bits(tl_m8_not(tl_f8_eq(now, tl_f8_load(g->active[k]))));
+    tl_f8_store(g->active[k], now);
+}
+
+/* A hard range holds where it has an impulse: as an equality until that would have to pull. */
+static inline void read_range(const tl_step *step, tl_joint_group *g, const tl_joint_row *rows, uint32_t k,
+                              const pair_velocity *p) {
+    tl_f8 zero = tl_f8_zero(), sign, gap = range_gap(&rows[k], &sign);
+    tl_m8 holds = tl_m8_and(is_hard(&rows[k]), tl_f8_gt(tl_f8_abs(tl_f8_load(rows[k].impulse)), zero));
+    tl_f8 bias = tl_f8_mul(tl_f8_max(gap, zero), tl_f8_set1(step->inverse_sub));
+    set_active(g, k, holds);
+    tl_f8 speed = tl_f8_mad(speed_to_meet(g, rows, k, p), sign, bias);
+    tl_f8_store(g->x[k], tl_f8_and_mask(holds, tl_f8_neg(speed)));
+}
+
+/* Speeds to be taken away. */
+static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+            continue;
+        }
+        pair_velocity p;
+        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        for (uint32_t k = 0; k < g->fixed; k++) {
+            tl_f8 speed = speed_to_meet(g, rows, k, &p);
+            speed = step->before_move ? tl_f8_add(speed, tl_f8_load(rows[k].curve)) : speed;
+            tl_f8_store(g->x[k], tl_f8_neg(speed));
+        }
+        for (uint32_t k = g->fixed; k < g->linked; k++) {
+            read_range(step, g, rows, k, &p);
+        }
+    }
+}
+
+/* Errors beyond (m, rad) are taken back in several pushes, for the rows turn on the way. */
+#define FAR_AWAY 2e-3f
+#define FAR_TURNED 2e-2f
+
+/* A range that holds may not go further in, and one that is far out is brought back. Returns where it is. */
+static inline tl_m8 push_range(tl_joint_group *g, const tl_joint_row *rows, uint32_t k, const pair_velocity *p) {
+    int linear = is_linear_row(g->code[k]);
+    tl_f8 zero = tl_f8_zero(), sign, gap = range_gap(&rows[k], &sign);
+    gap = tl_f8_add(gap, tl_f8_mul(sign, joint_speed(p, &rows[k], linear)));
+    tl_m8 out = tl_m8_and(is_hard(&rows[k]), tl_f8_lt(gap, tl_f8_set1(linear ? -FAR_AWAY : -FAR_TURNED)));
+    set_active(g, k, tl_m8_or(out, tl_f8_gt(tl_f8_load(g->active[k]), zero)));
+    tl_f8 push = tl_f8_mul(sign, tl_f8_max(tl_f8_neg(gap), zero));
+    tl_f8_store(g->x[k], tl_f8_mul(tl_f8_load(g->active[k]), push));
+    return out;
+}
+
+/* Errors to be taken away. */
+static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+            continue;
+        }
+        pair_velocity p;
+        load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
+        tl_m8 far = tl_m8_zero();
+        for (uint32_t k = 0; k < g->fixed; k++) {
+            tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
+            error = tl_f8_add(error, joint_speed(&p, &rows[k], is_linear_row(g->code[k])));
+            tl_f8_store(g->x[k], tl_f8_neg(error));
+            tl_f8 most = tl_f8_set1(is_linear_row(g->code[k]) ? FAR_AWAY : FAR_TURNED);
+            far = tl_m8_or(far, tl_f8_gt(tl_f8_abs(error), most));
+        }
+        g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(far) ? (uint32_t)TL_FAR_NOW : 0u);
+        for (uint32_t k = g->fixed; k < g->linked; k++) {
+            far = tl_m8_or(far, push_range(g, rows, k, &p));
+        }
+    }
+}
+
+/* Whether a joint of the group pulls hard enough to be looked at. */
+static void note_pull(const tl_step *step, tl_joint_group *g, v8 impulse) {
+    tl_f8 pull = tl_f8_sqrt(v8_dot(impulse, impulse));
+    tl_f8 give = tl_f8_max(tl_f8_load(g->give[0]), tl_f8_load(g->give[1]));
+    tl_f8_store(g->pull, pull);
+    g->stiff = (uint32_t)tl_m8_any(tl_f8_gt(tl_f8_mul(pull, give), tl_f8_set1(TL_STIFF_PULL * step->inverse_sub)));
+}
+
+/* Impulses to the bodies. A range that would have to pull is let go, and its linkage noted for another round. */
+static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+            continue;
+        }
+        pair_velocity p;
+        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        v8 pull = v8_zero();
+        tl_m8 pulls = tl_m8_zero();
+        for (uint32_t k = 0; k < g->linked; k++) {
+            tl_f8 old = tl_f8_load(rows[k].impulse), now = tl_f8_add(old, tl_f8_load(g->x[k]));
+            int linear = is_linear_row(g->code[k]);
+            if (k >= g->fixed) {
+                tl_f8 outward = tl_f8_mul(range_sign(&rows[k]), now);
+                tl_m8 wrong = tl_m8_and(is_hard(&rows[k]), tl_f8_lt(outward, tl_f8_zero()));
+                now = tl_f8_select(wrong, tl_f8_zero(), now);
+                pulls = tl_m8_or(pulls, wrong);
+            }
+            tl_f8_store(rows[k].impulse, now);
+            joint_apply(&p, &rows[k], linear, tl_f8_sub(now, old));
+            pull = linear ? v8_mad(pull, now, v8_load(rows[k].n[0])) : pull;
+        }
+        g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(pulls) ? (uint32_t)TL_FAR_NOW : 0u);
+        note_pull(step, g, pull);
+        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+    }
+}
+
+static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+            continue;
+        }
+        pair_velocity p;
+        load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
+        for (uint32_t k = 0; k < g->linked; k++) {
+            joint_apply(&p, &rows[k], is_linear_row(g->code[k]), tl_f8_load(g->x[k]));
+        }
+        store_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
+    }
+}
+
+static void solve_linkages(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        const tl_linkage *l = &tl_linkages(step->h)[i];
+        if (step->again && !l->far) {
+            continue;
+        }
+        if (l->wide) {
+            link_solve(step->h, l);
+        } else {
+            tl_linkage_solve_one(step->h, l);
+        }
+    }
+}
