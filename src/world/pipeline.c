@@ -73,6 +73,25 @@ static void run_linked_velocities(tl_step *step, const tl_kernels *k) {
 /* How often in a sub-step errors of linked joints are taken back that are too large for once. */
 #define MOST_PUSHES 8u
 
+/* Displacements that take errors back. */
+static void push_back(tl_step *step, const tl_kernels *k) {
+    tl_header *h = step->h;
+    uint32_t contacts = h->groups, joints = h->joint_groups;
+    if (step->pushes) {
+        k->push_joints(step, 0, joints);
+        k->push_contacts(step, 0, contacts);
+        run_linkages(step, k, k->read_errors, k->apply_pushes);
+        k->push(step, 0, step->rows);
+    }
+    step->again = 1;
+    for (uint32_t i = 1; i < MOST_PUSHES && tl_stage_far_linkages(h); i++) {
+        k->turn_joints(step, 0, joints);
+        run_linkages(step, k, k->read_errors, k->apply_pushes);
+        k->push(step, 0, step->rows);
+    }
+    step->again = 0;
+}
+
 static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch *w) {
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
@@ -110,19 +129,7 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     tl_watch_lap(w, TALUS_STAGE_POSITION);
     tl_stage_stiffness(step);
     k->turn_joints(step, 0, joints);
-    if (step->pushes) {
-        k->push_joints(step, 0, joints);
-        k->push_contacts(step, 0, contacts);
-        run_linkages(step, k, k->read_errors, k->apply_pushes);
-        k->push(step, 0, step->rows);
-    }
-    step->again = 1;
-    for (uint32_t i = 1; i < MOST_PUSHES && tl_stage_far_linkages(h); i++) {
-        k->turn_joints(step, 0, joints);
-        run_linkages(step, k, k->read_errors, k->apply_pushes);
-        k->push(step, 0, step->rows);
-    }
-    step->again = 0;
+    push_back(step, k);
     if (step->bounces) {
         tl_watch_lap(w, TALUS_STAGE_RELAX);
         strike(step, k);
