@@ -114,8 +114,8 @@ static void bridge_under_a_weight(void **state) {
     pin(&world, none, right, kit_vec(length, 1.0f, 0.0f), 1);
     talus_body box = box_of(&world, kit_vec(5.0f, 0.6f, 0.0f), kit_vec(0.4f, 0.4f, 0.4f), 0.6f);
     set_mass(&world, box, 500.0f);
-    BELOW(worst_of(&world, 300), 5e-3);
-    assert_int_equal(kit_counters(&world).linkages, 1);
+    BELOW(worst_of(&world, 300), 25e-3); /* strung between two places, its joints are solved one by one */
+    assert_int_equal(kit_counters(&world).linkages, 0);
     talus_vec3 at = kit_place(&world, box);
     assert_true(at.y < 0.45f && at.y > -5.0f); /* it bears the box */
     kit_end(&world);

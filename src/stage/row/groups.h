@@ -16,6 +16,7 @@ void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint);
 /* What linkage_of says of a joint beside its place in a linkage. */
 #define TL_LINKAGE_NONE 0xffffffffu  /* it is in none */
 #define TL_LINKAGE_READY 0xfffffffeu /* its group is made */
+#define TL_LINKAGE_APART 0xfffffffdu /* while they are looked for: with others, none of which is to be linked */
 
 /* How many rows of a joint are solved with the linkage that it is in: equalities, then ranges. */
 uint32_t tl_linked_rows(const tl_joint_record *j);

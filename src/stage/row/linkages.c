@@ -114,10 +114,10 @@ static uint32_t shape_of(finder *f, uint32_t first, uint32_t count, uint32_t end
     return f->shapes++;
 }
 
-/* The joints from `first` on are solved one by one. */
-static void leave(tl_header *h, uint32_t first, uint32_t count) {
+/* The joints from `first` on are solved one by one, being of no linkage or of one left apart. */
+static void leave(tl_header *h, uint32_t first, uint32_t count, uint32_t as) {
     for (uint32_t k = 0; k < count; k++) {
-        tl_linkage_of(h)[tl_linkage_order(h)[first + k]] = TL_LINKAGE_NONE;
+        tl_linkage_of(h)[tl_linkage_order(h)[first + k]] = as;
     }
 }
 
@@ -186,6 +186,17 @@ static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
     return 0;
 }
 
+/* What hangs between several fixed places may be taut as a string, and its stiffness across is beyond a linear solve.
+ */
+static int is_strung(const tl_header *h, const uint32_t *order, uint32_t count) {
+    uint32_t held = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_joint_record *j = &tl_joints(h)[order[k]];
+        held += !free_row(h, j->body_a) || !free_row(h, j->body_b);
+    }
+    return held > 1u && count > 4u;
+}
+
 static void find_components(const tl_step *step, finder *f) {
     tl_header *h = f->h;
     const uint32_t *awake = tl_awake_joint(h);
@@ -196,8 +207,9 @@ static void find_components(const tl_step *step, finder *f) {
             continue;
         }
         uint32_t ends, count = gather(h, awake[k], f->joints, &ends);
-        if (count > 1u && (is_easy(h, order + f->joints, count) || is_wild(step, order + f->joints, count))) {
-            leave(h, f->joints, count);
+        if (count > 1u && (is_easy(h, order + f->joints, count) || is_strung(h, order + f->joints, count) ||
+                           is_wild(step, order + f->joints, count))) {
+            leave(h, f->joints, count, TL_LINKAGE_APART); /* not to be gathered again from another joint */
         } else if (count > 1u) {
             uint32_t shape = shape_of(f, f->joints, count, ends);
             tl_linkage *l = &tl_linkages(h)[f->linkages++];
@@ -273,7 +285,7 @@ static void place_linkages(tl_step *step, finder *f) {
         }
         if (!settle(f, &l, s, s->wide > 0 ? TL_LANES : 1u) || (s->wide > 0 && !open_groups(f, &l, s))) {
             s->wide -= s->wide > 0;
-            leave(h, l.first_joint, s->nodes);
+            leave(h, l.first_joint, s->nodes, TL_LINKAGE_NONE);
             h->counters.joints_apart += s->nodes;
             continue;
         }
@@ -314,6 +326,10 @@ void tl_linkages_find(tl_step *step) {
     }
     memset(tl_linkage_rows(h), 0, step->rows * sizeof(uint32_t));
     find_components(step, &f);
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        uint32_t *of = &tl_linkage_of(h)[tl_awake_joint(h)[k]];
+        *of = *of == TL_LINKAGE_APART ? TL_LINKAGE_NONE : *of;
+    }
     place_linkages(step, &f);
 }
 
