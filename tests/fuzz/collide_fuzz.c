@@ -2,6 +2,7 @@
  * out is finite, unit where it says so, within the margin and numbered without repeats. */
 #include "base/vec.h"
 #include "collide/collide.h"
+#include "fuzz_input.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,20 +12,6 @@
 #define BLOB_BYTES (1u << 16)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-typedef struct reader {
-    const uint8_t *data;
-    size_t left;
-} reader;
-
-static uint32_t take_u32(reader *r) {
-    uint32_t v = 0;
-    size_t n = r->left < 4u ? r->left : 4u;
-    memcpy(&v, r->data, n);
-    r->data += n;
-    r->left -= n;
-    return v;
-}
 
 /* Any finite float. */
 static float take_float(reader *r) {

@@ -1,6 +1,6 @@
 /* libFuzzer: hulls of arbitrary floats, and arbitrary bytes as a hull's blob. The first byte chooses; what the builder
  * makes must pass the validator, and what passes the validator must be safe to walk. */
-#include "geom/hull.h"
+#include "fuzz_input.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,26 +29,6 @@ static float walk(const talus_hull *h) {
         } while (e != first);
     }
     return sum;
-}
-
-/* The header's counts kept small and its checksum mended, so that the bytes get past the first look. */
-static void mend(unsigned char *blob, size_t size) {
-    talus_hull h;
-    uint32_t hash = 2166136261u, word;
-    if (size < sizeof h) {
-        return;
-    }
-    memcpy(&h, blob, sizeof h);
-    h.magic = TL_HULL_MAGIC;
-    h.version = TL_HULL_VERSION;
-    h.bytes = (uint32_t)size;
-    memcpy(blob, &h, sizeof h);
-    for (size_t i = 16u; i + 4u <= size; i += 4u) {
-        memcpy(&word, blob + i, 4u);
-        hash = (hash ^ word) * 16777619u;
-        hash ^= hash >> 15;
-    }
-    memcpy(blob + 12, &hash, 4u);
 }
 
 static volatile float sink;
@@ -94,7 +74,7 @@ static void check_build(const uint8_t *data, size_t size, uint8_t mode, uint8_t 
             for (size_t i = 0u; i < size && i < 4u; ++i) {
                 out[(data[i] * 256u + data[size - 1u - i]) % bytes] ^= damage;
             }
-            mend(out, bytes);
+            mend_hull(out, bytes);
             check_blob(out, bytes);
         }
     } else if (status != TALUS_FLAT_HULL && status != TALUS_NOT_FINITE && status != TALUS_BAD_SHAPE) {
@@ -118,7 +98,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     unsigned char *blob = aligned_block(size, &memory);
     memcpy(blob, data, size);
     if (mode == 4u) {
-        mend(blob, size);
+        mend_hull(blob, size);
     }
     check_blob(blob, size);
     free(memory);

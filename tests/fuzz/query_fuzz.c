@@ -2,9 +2,9 @@
  * chooses. Whatever comes in is refused or answered; an answer is finite, unit or zero where it is a normal, in order,
  * and says the same whether the trees or the shapes one by one are asked. */
 #include "busy_world.h"
+#include "fuzz_input.h"
 
 #include "base/vec.h"
-#include "geom/hull.h"
 
 #include <stdio.h>
 
@@ -13,20 +13,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 #define MAX_POINTS 64u
 #define REGION_BYTES (1u << 15)
 #define MOST_HITS 24u
-
-typedef struct reader {
-    const uint8_t *data;
-    size_t left;
-} reader;
-
-static uint32_t take_u32(reader *r) {
-    uint32_t v = 0;
-    size_t n = r->left < 4u ? r->left : 4u;
-    memcpy(&v, r->data, n);
-    r->data += n;
-    r->left -= n;
-    return v;
-}
 
 /* Any bits, a small number, or a power of ten, as the first word says. */
 static float take_float(reader *r) {
@@ -67,22 +53,6 @@ static float take_size(reader *r) {
 
 /* --- hulls ---------------------------------------------------------------------------------------- */
 
-static void mend(unsigned char *blob, size_t size) {
-    talus_hull h;
-    uint32_t hash = 2166136261u, word;
-    memcpy(&h, blob, sizeof h);
-    h.magic = TL_HULL_MAGIC;
-    h.version = TL_HULL_VERSION;
-    h.bytes = (uint32_t)size;
-    memcpy(blob, &h, sizeof h);
-    for (size_t i = 16u; i + 4u <= size; i += 4u) {
-        memcpy(&word, blob + i, 4u);
-        hash = (hash ^ word) * 16777619u;
-        hash ^= hash >> 15;
-    }
-    memcpy(blob + 12, &hash, 4u);
-}
-
 /* A cooked hull, one with words changed as a forger would, or the input's bytes; returns the region's size. */
 static size_t take_region(reader *r, unsigned char *region) {
     static unsigned char *scratch;
@@ -93,7 +63,7 @@ static size_t take_region(reader *r, unsigned char *region) {
         bytes = r->left < REGION_BYTES ? r->left / 32u * 32u : REGION_BYTES;
         memcpy(region, r->data, bytes);
         if (bytes >= sizeof(talus_hull)) {
-            mend(region, bytes);
+            mend_hull(region, bytes);
         }
         return bytes;
     }
@@ -112,7 +82,7 @@ static size_t take_region(reader *r, unsigned char *region) {
         uint32_t at = take_u32(r) % (uint32_t)(bytes / 4u), word = take_u32(r);
         memcpy(region + 4u * at, &word, 4u);
     }
-    mend(region, bytes);
+    mend_hull(region, bytes);
     return bytes;
 }
 

@@ -1,10 +1,8 @@
 /* talus bench: what the library's parts cost and how exact they are. */
 #define _POSIX_C_SOURCE 200809L
 #include "bench_queries.h"
-#include "host/file.h"
 #include "tool.h"
 
-#include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,17 +15,6 @@ static const struct option long_options[] = {{"quick", no_argument, NULL, QUICK}
                                              {"plot", required_argument, NULL, PLOT},
                                              {"help", no_argument, NULL, HELP},
                                              {NULL, 0, NULL, 0}};
-
-static int write_text(const char *path, gltf_text *text) {
-    int status = 0;
-    if (text->failed) {
-        status = tool_fail(GLTF_FAILED, "%s: there is no memory for it", path);
-    } else if (host_file_write(path, text->data, text->size) != HOST_FILE_OK) {
-        status = tool_fail(GLTF_FAILED, "%s: %s", path, strerror(errno));
-    }
-    gltf_text_free(text);
-    return status;
-}
 
 int tool_bench(int count, char **arguments) {
     static char name[] = "talus: bench"; /* what getopt's messages begin with */
@@ -66,7 +53,7 @@ int tool_bench(int count, char **arguments) {
     gltf_text text = {NULL, 0, 0, 0};
     if (plot != NULL) {
         bench_plot(&table, &text);
-        status = write_text(plot, &text);
+        status = tool_write_text(plot, &text);
     }
     if (status == 0 && (plot == NULL || strcmp(plot, "-") != 0)) {
         if (json) {
@@ -74,7 +61,7 @@ int tool_bench(int count, char **arguments) {
         } else {
             bench_print(&table, &text);
         }
-        status = write_text("-", &text);
+        status = tool_write_text("-", &text);
     }
     return status;
 }

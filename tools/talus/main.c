@@ -1,8 +1,10 @@
 /* talus: runs physics scenes without a window. */
+#include "host/file.h"
 #include "tool.h"
 
 #include "talus/version.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,6 +16,17 @@ int tool_fail(int status, const char *format, ...) {
     vfprintf(stderr, format, arguments);
     va_end(arguments);
     fputc('\n', stderr);
+    return status;
+}
+
+int tool_write_text(const char *path, gltf_text *text) {
+    int status = 0;
+    if (text->failed) {
+        status = tool_fail(GLTF_FAILED, "%s: there is no memory for it", path);
+    } else if (host_file_write(path, text->data, text->size) != HOST_FILE_OK) {
+        status = tool_fail(GLTF_FAILED, "%s: %s", path, strerror(errno));
+    }
+    gltf_text_free(text);
     return status;
 }
 

@@ -1,13 +1,11 @@
 /* talus profile: where the time of a scene's steps goes, and which steps take too long and why. */
 #define _POSIX_C_SOURCE 200809L
 #include "host/clock.h"
-#include "host/file.h"
 #include "recording.h"
 #include "source.h"
 #include "timeline.h"
 #include "tool.h"
 
-#include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -115,18 +113,6 @@ static void show(const timeline *t, uint32_t run, uint32_t step, void *context) 
 
 /* --- writing --- */
 
-/* A text to a file, "-" being the standard output. */
-static int write_text(const char *path, gltf_text *text) {
-    int status = 0;
-    if (text->failed) {
-        status = tool_fail(GLTF_FAILED, "%s: there is no memory for it", path);
-    } else if (host_file_write(path, text->data, text->size) != HOST_FILE_OK) {
-        status = tool_fail(GLTF_FAILED, "%s: %s", path, strerror(errno));
-    }
-    gltf_text_free(text);
-    return status;
-}
-
 static int to_output(const char *path) { return path != NULL && strcmp(path, "-") == 0; }
 
 static int write_all(const profile_options *options, const timeline *t) {
@@ -134,22 +120,22 @@ static int write_all(const profile_options *options, const timeline *t) {
     gltf_text text = {NULL, 0, 0, 0};
     if (options->csv != NULL) {
         timeline_csv(t, &text);
-        status = write_text(options->csv, &text);
+        status = tool_write_text(options->csv, &text);
     }
     if (status == 0 && options->trace != NULL) {
         timeline_trace(t, &text);
-        status = write_text(options->trace, &text);
+        status = tool_write_text(options->trace, &text);
     }
     if (status == 0 && options->html != NULL) {
         timeline_html(t, options->budget_ms, &text);
-        status = write_text(options->html, &text);
+        status = tool_write_text(options->html, &text);
     }
     if (status == 0 && options->json) {
         timeline_json(t, options->budget_ms, &text);
-        status = write_text("-", &text);
+        status = tool_write_text("-", &text);
     } else if (status == 0 && !to_output(options->csv) && !to_output(options->trace) && !to_output(options->html)) {
         timeline_print(t, options->budget_ms, &text);
-        status = write_text("-", &text);
+        status = tool_write_text("-", &text);
     }
     return status;
 }

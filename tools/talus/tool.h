@@ -3,6 +3,7 @@
 #define TALUS_TOOL_TOOL_H
 
 #include "gltf/error.h"
+#include "gltf/text.h"
 
 /* Besides those of gltf_status. */
 #define TOOL_USAGE 2
@@ -12,6 +13,9 @@
 
 /* "talus: " and a line on the standard error; returns `status`. */
 int tool_fail(int status, const char *format, ...) GLTF_PRINTF(2, 3);
+
+/* Writes a text to a file, "-" being the standard output, and frees it. An exit status. */
+int tool_write_text(const char *path, gltf_text *text);
 
 /* Subcommands: their arguments without the tool's name, the subcommand's name first. */
 int tool_run(int count, char **arguments);
