@@ -22,7 +22,6 @@ typedef struct tl_step {
     int stiff;       /* some body's moment of inertia counts as larger than it is */
     int again;       /* only what was far from its place is looked at */
     int before_move; /* impulses are those before the bodies move */
-    int first_pass;  /* the first pass over the contacts in this step */
 } tl_step;
 
 typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);

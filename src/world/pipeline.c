@@ -6,7 +6,7 @@
 #include "world/watch.h"
 
 /* A contact in overlap is a damped spring of the set frequency, no stiffer than what the sub-steps can follow. */
-#define MOST_HERTZ_OF_SUBSTEPS 0.21f
+#define MOST_HERTZ_OF_SUBSTEPS 0.25f
 
 /* Over the contacts for impacts that run from body to body, a sub-step; what is then left does not bounce. */
 #define MOST_SWEEPS 16u
@@ -30,7 +30,7 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->inverse_sub = 1.0f / step->sub;
     step->warm_scale = h->settings.substep > 0.0f ? step->sub / h->settings.substep : 1.0f;
     step->rows = 0;
-    step->any_locks = step->first_pass = step->before_move = step->stiff = step->again = step->pushes = 0;
+    step->any_locks = step->before_move = step->stiff = step->again = step->pushes = 0;
     h->settings.substep = step->sub;
     set_softness(step);
     tl_events_begin(h);
@@ -81,6 +81,9 @@ static void push_back(tl_step *step, const tl_kernels *k) {
         k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
         run_linkages(step, k, k->read_errors, k->apply_pushes);
+        if (step->any_locks) {
+            tl_stage_locks(step);
+        }
         k->push(step, 0, step->rows);
     }
     step->again = 1;
@@ -106,10 +109,11 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
     if (first) {
         k->begin_joints(step, 0, joints);
     }
-    step->first_pass = first;
     if (first && step->bounces) {
         tl_watch_lap(w, TALUS_STAGE_SOLVE);
+        step->before_move = 1;
         strike(step, k);
+        step->before_move = 0;
         tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
     }
     for (uint32_t i = 0; i < passes; i++) {
@@ -117,10 +121,8 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
         step->before_move = 1;
         run_linked_velocities(step, k);
         step->before_move = 0;
-        step->first_pass = first && i == 0;
         k->solve_contacts(step, 0, contacts);
     }
-    step->first_pass = 0;
     if (step->any_locks) {
         tl_stage_locks(step);
     }

@@ -52,8 +52,8 @@ talus_world_def talus_world_def_default(void) {
     def.gravity = tl_v(0.0f, -9.81f, 0.0f);
     def.substeps = 4;
     def.iterations = 1;
-    def.contact_hertz = 50.0f;
-    def.contact_damping_ratio = 0.7f;
+    def.contact_hertz = 58.0f;
+    def.contact_damping_ratio = 0.5f;
     def.push_speed = 3.0f;
     def.speculative_margin = 0.02f;
     def.recycle_slack = 0.0005f;

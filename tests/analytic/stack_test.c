@@ -16,7 +16,7 @@ static void stack_stands(void **state) {
     kit_steps(&world, 600);
     double sunk = 0.0;
     for (int i = 0; i < 10; i++) {
-        sunk += (i ? 2.0 : 1.0) * (10 - i) * G / (100.0 * PI * 100.0 * PI);
+        sunk += (i ? 2.0 : 1.0) * (10 - i) * G / (116.0 * PI * 116.0 * PI);
         CLOSE(kit_place(&world, body[i]).x, 0.0, 2e-3);
         CLOSE(kit_place(&world, body[i]).z, 0.0, 2e-3);
         CLOSE(kit_place(&world, body[i]).y, 0.5 + i - sunk, 0.05 * sunk);

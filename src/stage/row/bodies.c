@@ -160,7 +160,7 @@ void tl_stage_locks(tl_step *step) {
         uint32_t locks = (uint32_t)tl_row_moved(h)[row].f[6];
         for (uint32_t k = 0; k < 3u; k++) {
             if (locks & (uint32_t)TALUS_LOCK_LINEAR_X << k) {
-                tl_row_velocity(h)[row].f[k] = tl_row_before(h)[row].f[k] = 0.0f;
+                tl_row_velocity(h)[row].f[k] = tl_row_before(h)[row].f[k] = tl_row_push(h)[row].f[k] = 0.0f;
             }
         }
     }

@@ -10,6 +10,9 @@
 /* Weight of a point that is far apart, against one that touches, in the manifold's centre. */
 #define FAR_WEIGHT 1e-3f
 
+/* Of what friction can bear, what holds bears less. */
+#define GRIP_LOAD 0.98f
+
 typedef struct contact_bodies {
     v8 xa, xb; /* centres of mass */
     q8 qa, qb; /* principal axes */
@@ -129,6 +132,25 @@ static void prepare_approach(const tl_step *step, tl_contact_group *g, v8 n) {
     }
 }
 
+/* N s: what presses eight pairs together. */
+static inline tl_f8 pressure_of(const tl_contact_group *g) {
+    tl_f8 pressure = tl_f8_zero();
+    for (uint32_t i = 0; i < g->points; i++) {
+        pressure = tl_f8_add(pressure, tl_f8_load(g->point[i].impulse));
+    }
+    return pressure;
+}
+
+/* How far what did not slide in the last step has slid since the manifold was made. */
+static void prepare_grip(tl_contact_group *g, v8 slid, v8 t1, v8 t2) {
+    tl_f8 f1 = tl_f8_load(g->tangent_impulse[0]), f2 = tl_f8_load(g->tangent_impulse[1]);
+    tl_f8 hold = tl_f8_mul(tl_f8_mul(tl_f8_set1(GRIP_LOAD), tl_f8_load(g->dynamic_friction)), pressure_of(g));
+    tl_m8 held = tl_f8_lt(tl_f8_mad(tl_f8_mul(f1, f1), f2, f2), tl_f8_mul(hold, hold));
+    tl_f8_store(g->held, tl_f8_and_mask(held, tl_f8_set1(1.0f)));
+    tl_f8_store(g->slid[0], v8_dot(slid, t1));
+    tl_f8_store(g->slid[1], v8_dot(slid, t2));
+}
+
 static void prepare_friction(const tl_step *step, tl_contact_group *g, const contact_bodies *c, v8 n, v8 ra, v8 rb) {
     tl_f8 r[8], warm = tl_f8_set1(step->warm_scale), mass = tl_f8_add(c->ma, c->mb);
     v8 t1 = tangent_of(n), t2 = v8_cross(n, t1);
@@ -153,6 +175,7 @@ static void prepare_friction(const tl_step *step, tl_contact_group *g, const con
     v8 impulse = v8_scale(v8_of(r[3], r[4], r[5]), warm);
     tl_f8_store(g->tangent_impulse[0], v8_dot(impulse, t1));
     tl_f8_store(g->tangent_impulse[1], v8_dot(impulse, t2));
+    prepare_grip(g, v8_sub(v8_add(v8_sub(c->xb, c->xa), rb), ra), t1, t2);
     tl_f8_store(g->twist_impulse, tl_f8_mul(r[6], warm));
     tl_f8_store(g->rolling_impulse[0], tl_f8_zero());
     tl_f8_store(g->rolling_impulse[1], tl_f8_zero());

@@ -10,6 +10,11 @@
  * that the bottom of a deep pile does not give way. */
 #define PUSH_SHARE 0.6f
 
+/* Of the way that a body has slid in a resting contact since the manifold was made, this share is taken back in a
+ * sub-step, so that what rests does not creep; what has slid further than GRIP_REACH (m) slides. */
+#define GRIP_SHARE 0.08f
+#define GRIP_REACH 5e-4f
+
 /* The velocities of eight pairs of bodies, or their displacements. */
 typedef struct pair_velocity {
     v8 va, ua, vb, ub;
@@ -31,9 +36,10 @@ static inline void store_pair(float *velocities, const uint32_t *a, const uint32
     tl_f8_store_rows(velocities, b, rb);
 }
 
-/* How far eight pairs of bodies have gone since the step began: the way of the centres along the normal, b against a,
- * and the whitened turns. */
+/* How far eight pairs of bodies have gone since the step began: the way of the centres, b against a, its part along the
+ * normal, and the whitened turns. */
 typedef struct pair_motion {
+    v8 d;
     tl_f8 way;
     v8 da, db;
 } pair_motion;
@@ -47,7 +53,8 @@ static inline pair_motion load_motion(const tl_step *step, const tl_contact_grou
     m.da = v8_of(r[3], r[4], r[5]);
     tl_f8_load_rows(moves, g->b, r);
     m.db = v8_of(r[3], r[4], r[5]);
-    m.way = v8_dot(n, v8_sub(v8_of(r[0], r[1], r[2]), xa));
+    m.d = v8_sub(v8_of(r[0], r[1], r[2]), xa);
+    m.way = v8_dot(n, m.d);
     return m;
 }
 
@@ -91,10 +98,28 @@ static inline void hold_or_slide(const tl_contact_group *g, tl_f8 s1, tl_f8 s2, 
     *new2 = tl_f8_mul(x2, scale);
 }
 
-static inline void solve_tangent(tl_contact_group *g, pair_velocity *p, v8 n, tl_f8 pressure) {
+/* m/s: the speeds along the tangents at which what held is drawn back to where it was gripped. */
+typedef struct grip {
+    tl_f8 s1, s2;
+} grip;
+
+static inline grip grip_of(const tl_step *step, const tl_contact_group *g, const pair_motion *m, v8 n) {
     v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
     v8 ja1 = v8_load(g->ja1[0]), jb1 = v8_load(g->jb1[0]), ja2 = v8_load(g->ja2[0]), jb2 = v8_load(g->jb2[0]);
-    tl_f8 s1 = row_speed(p, t1, ja1, jb1), s2 = row_speed(p, t2, ja2, jb2);
+    tl_f8 reach = tl_f8_set1(GRIP_REACH), back = tl_f8_neg(reach);
+    tl_f8 rate = tl_f8_mul(tl_f8_load(g->held), tl_f8_set1(GRIP_SHARE * step->inverse_sub));
+    tl_f8 turn1 = tl_f8_sub(v8_dot(jb1, m->db), v8_dot(ja1, m->da));
+    tl_f8 turn2 = tl_f8_sub(v8_dot(jb2, m->db), v8_dot(ja2, m->da));
+    tl_f8 way1 = tl_f8_add(tl_f8_add(tl_f8_load(g->slid[0]), v8_dot(t1, m->d)), turn1);
+    tl_f8 way2 = tl_f8_add(tl_f8_add(tl_f8_load(g->slid[1]), v8_dot(t2, m->d)), turn2);
+    return (grip){tl_f8_mul(rate, tl_f8_max(tl_f8_min(way1, reach), back)),
+                  tl_f8_mul(rate, tl_f8_max(tl_f8_min(way2, reach), back))};
+}
+
+static inline void solve_tangent(tl_contact_group *g, pair_velocity *p, grip back, v8 n, tl_f8 pressure) {
+    v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
+    v8 ja1 = v8_load(g->ja1[0]), jb1 = v8_load(g->jb1[0]), ja2 = v8_load(g->ja2[0]), jb2 = v8_load(g->jb2[0]);
+    tl_f8 s1 = tl_f8_add(row_speed(p, t1, ja1, jb1), back.s1), s2 = tl_f8_add(row_speed(p, t2, ja2, jb2), back.s2);
     tl_f8 old1 = tl_f8_load(g->tangent_impulse[0]), old2 = tl_f8_load(g->tangent_impulse[1]), new1, new2;
     hold_or_slide(g, s1, s2, old1, old2, pressure, &new1, &new2);
     tl_f8_store(g->tangent_impulse[0], new1);
@@ -139,27 +164,15 @@ static void solve_rolling(const tl_step *step, tl_contact_group *g, pair_velocit
     apply_spin(p, ja2, jb2, tl_f8_sub(new2, old2));
 }
 
-static inline void solve_friction(const tl_step *step, tl_contact_group *g, pair_velocity *p, v8 n) {
-    tl_f8 pressure = tl_f8_zero();
-    for (uint32_t i = 0; i < g->points; i++) {
-        pressure = tl_f8_add(pressure, tl_f8_load(g->point[i].impulse));
-    }
-    solve_tangent(g, p, n, pressure);
-    solve_twist(g, p, pressure);
-    if (g->rolls) {
-        solve_rolling(step, g, p, n, pressure);
-    }
-}
-
-static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_velocity *p, v8 n, int with_bias) {
+static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_velocity *p, const pair_motion *m, v8 n,
+                                 int with_bias) {
     tl_f8 zero = tl_f8_zero(), one = tl_f8_set1(1.0f), inverse_h = tl_f8_set1(step->inverse_sub);
     tl_f8 rate = tl_f8_set1(step->bias_rate), push = tl_f8_set1(-step->h->settings.push_speed);
     tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
-    pair_motion moved = load_motion(step, g, n);
     for (uint32_t i = 0; i < g->points; i++) {
         tl_contact_lane_point *c = &g->point[i];
         v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
-        tl_f8 gap = gap_now(&moved, c, ja, jb);
+        tl_f8 gap = gap_now(m, c, ja, jb);
         tl_m8 apart = tl_f8_gt(gap, zero);
         tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_load(c->mass);
         tl_f8 old = tl_f8_load(c->impulse), now = old;
@@ -178,32 +191,49 @@ static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_
     }
 }
 
-/* Friction is bounded by the pressure of a pass without bias, for the spring's own is too low until it has given way:
- * before the move that is the one of the last sub-step, or in a new contact none yet. */
-static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int with_bias) {
-    int friction_first = with_bias && !step->first_pass;
+/* Before the move friction is what the last sub-step found, as part of the warm start: worked out against the spring's
+ * pressure it would hold what the spring moves, and what rests would creep. */
+static inline void solve_contact_group(const tl_step *step, tl_contact_group *g) {
     pair_velocity p;
     load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     v8 n = v8_load(g->normal[0]);
-    if (friction_first) {
-        solve_friction(step, g, &p, n);
+    pair_motion moved = load_motion(step, g, n);
+    solve_normals(step, g, &p, &moved, n, 1);
+    if (g->rolls && step->first_substep) { /* there is no warm start of it */
+        solve_rolling(step, g, &p, n, pressure_of(g));
     }
-    solve_normals(step, g, &p, n, with_bias);
-    if (!friction_first) {
-        solve_friction(step, g, &p, n);
+    store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+}
+
+/* Friction goes before the normals as well as after them: its lever turns bodies, and they take up the turn. */
+static inline void relax_contact_group(const tl_step *step, tl_contact_group *g) {
+    pair_velocity p;
+    load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+    v8 n = v8_load(g->normal[0]);
+    pair_motion moved = load_motion(step, g, n);
+    grip back = grip_of(step, g, &moved, n);
+    tl_f8 pressure = pressure_of(g);
+    solve_tangent(g, &p, back, n, pressure);
+    solve_twist(g, &p, pressure);
+    solve_normals(step, g, &p, &moved, n, 0);
+    pressure = pressure_of(g);
+    solve_tangent(g, &p, back, n, pressure);
+    solve_twist(g, &p, pressure);
+    if (g->rolls) {
+        solve_rolling(step, g, &p, n, pressure);
     }
     store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
 }
 
 static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
-        solve_contact_group(step, &tl_group_pool(step->h)[i], 1);
+        solve_contact_group(step, &tl_group_pool(step->h)[i]);
     }
 }
 
 static void relax_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
-        solve_contact_group(step, &tl_group_pool(step->h)[i], 0);
+        relax_contact_group(step, &tl_group_pool(step->h)[i]);
     }
 }
 

@@ -27,7 +27,7 @@ typedef struct impact_point {
 static int find_impacts(const tl_step *step, tl_contact_group *g, const pair_velocity *p, v8 n, impact_point *out) {
     tl_f8 zero = tl_f8_zero(), threshold = tl_f8_set1(step->h->settings.restitution_speed);
     tl_f8 restitution = tl_f8_load(g->restitution), c = v8_dot(n, closing_of(step, g));
-    tl_f8 gain = tl_f8_mul(c, tl_f8_set1(step->sub)), ahead = step->first_pass ? gain : zero;
+    tl_f8 gain = tl_f8_mul(c, tl_f8_set1(step->sub)), ahead = step->before_move ? gain : zero;
     tl_f8 reach = tl_f8_set1(IMPACT_REACH * step->sub);
     pair_motion moved = load_motion(step, g, n);
     tl_m8 any = tl_m8_zero();

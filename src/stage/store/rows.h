@@ -53,6 +53,8 @@ typedef struct tl_contact_group {
     float jan[3][TL_LANES], jbn[3][TL_LANES];          /* about the normal */
     float k11[TL_LANES], k12[TL_LANES], k22[TL_LANES]; /* inverse of the tangents' 2 x 2 matrix */
     float twist_mass[TL_LANES], lever[TL_LANES];       /* m: of the friction about the normal */
+    float slid[2][TL_LANES]; /* m: how far b has slid on a since the manifold was made, when the step began */
+    float held[TL_LANES];    /* 1: it did not slide in the last step; else 0 */
     float static_friction[TL_LANES], dynamic_friction[TL_LANES], restitution[TL_LANES], rolling[TL_LANES];
     float tangent_impulse[2][TL_LANES], twist_impulse[TL_LANES], rolling_impulse[2][TL_LANES];
     float roll_mass[TL_LANES];
