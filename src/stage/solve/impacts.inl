@@ -20,14 +20,31 @@ typedef struct impact_point {
     tl_f8 impulse; /* N s */
 } impact_point;
 
+/* Whether a point closes fast enough to meet above the threshold at all. What meets has a gap below (v + c h) r with r
+ * = IMPACT_REACH h, so (v - c h)^2 + 2 c s stays below (|v| + 3 |c| h)^2. */
+static int may_meet(const tl_step *step, const tl_contact_group *g, const pair_velocity *p, v8 n, tl_f8 gain) {
+    tl_f8 threshold = tl_f8_set1(step->h->settings.restitution_speed), zero = tl_f8_zero();
+    tl_f8 most = tl_f8_mul(tl_f8_set1(3.0f), tl_f8_abs(gain));
+    tl_m8 any = tl_m8_zero();
+    for (uint32_t i = 0; i < g->points; i++) {
+        const tl_contact_lane_point *point = &g->point[i];
+        tl_f8 closing = tl_f8_neg(row_speed(p, n, v8_load(point->ja[0]), v8_load(point->jb[0])));
+        any = tl_m8_or(any, tl_m8_and(tl_f8_gt(closing, zero), tl_f8_gt(tl_f8_add(closing, most), threshold)));
+    }
+    return tl_m8_any(any);
+}
+
 /* Which of a manifold's points meet within a sub-step. Surfaces that close at v over the gap s, drawn together by the
  * acceleration c, meet at v_m^2 = v^2 + 2 c s. They leave from where they are, at u^2 + 2 c s = (e v_m)^2. Before the
  * first move of a step the velocities have the forces of a sub-step ahead of the places: then v is less by c h, and
  * what counts is the gap after the move, s + u h. */
 static int find_impacts(const tl_step *step, tl_contact_group *g, const pair_velocity *p, v8 n, impact_point *out) {
+    tl_f8 c = v8_dot(n, closing_of(step, g)), gain = tl_f8_mul(c, tl_f8_set1(step->sub));
+    if (!may_meet(step, g, p, n, gain)) {
+        return 0;
+    }
     tl_f8 zero = tl_f8_zero(), threshold = tl_f8_set1(step->h->settings.restitution_speed);
-    tl_f8 restitution = tl_f8_load(g->restitution), c = v8_dot(n, closing_of(step, g));
-    tl_f8 gain = tl_f8_mul(c, tl_f8_set1(step->sub)), ahead = step->before_move ? gain : zero;
+    tl_f8 restitution = tl_f8_load(g->restitution), ahead = step->before_move ? gain : zero;
     tl_f8 reach = tl_f8_set1(IMPACT_REACH * step->sub);
     pair_motion moved = load_motion(step, g, n);
     tl_m8 any = tl_m8_zero();
