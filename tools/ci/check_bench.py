@@ -44,8 +44,17 @@ def check_solver(data):
                 fail(f"{scene['scene']}: nothing is on the front of {name}")
 
 
+def check_features(data):
+    if len({row["feature"] for row in data["rows"]}) < 10 or len(data["rows"]) % 2:
+        fail("features are missing")
+    for row in data["rows"]:
+        positive(row, "ms_without", "ms_with", "ratio", "ratio_low", "ratio_high", "bodies")
+        if not row["ratio_low"] <= row["ratio"] <= row["ratio_high"] or row["over"]:
+            fail(f"a ratio out of its interval, or a verdict on one pair: {row}")
+
+
 def main():
-    {"queries": check_queries, "solver": check_solver}[sys.argv[1]](json.load(open(sys.argv[2])))
+    {"queries": check_queries, "solver": check_solver, "features": check_features}[sys.argv[1]](json.load(open(sys.argv[2])))
 
 
 main()

@@ -1,5 +1,6 @@
 /* talus bench: what the library's parts cost and how exact they are. */
 #define _POSIX_C_SOURCE 200809L
+#include "bench_features.h"
 #include "bench_queries.h"
 #include "bench_solver.h"
 #include "tool.h"
@@ -9,32 +10,39 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { QUICK, JSON, PLOT, SCENE, HELP };
+enum { QUICK = 1, JSON, PLOT, SCENE, FEATURE, HELP };
 
-static const struct option long_options[] = {
-    {"quick", no_argument, NULL, QUICK},     {"json", no_argument, NULL, JSON},
-    {"plot", required_argument, NULL, PLOT}, {"scene", required_argument, NULL, SCENE},
-    {"help", no_argument, NULL, HELP},       {NULL, 0, NULL, 0}};
+#define MOST_CHOSEN 32u
+
+static const struct option long_options[] = {{"quick", no_argument, NULL, QUICK},
+                                             {"json", no_argument, NULL, JSON},
+                                             {"plot", required_argument, NULL, PLOT},
+                                             {"scene", required_argument, NULL, SCENE},
+                                             {"feature", required_argument, NULL, FEATURE},
+                                             {"help", no_argument, NULL, HELP},
+                                             {NULL, 0, NULL, 0}};
 
 typedef struct bench_options {
     const char *plot;
-    const char *scenes[SOLVER_MOST_SCENES];
-    uint32_t scene_count;
+    int choice; /* SCENE or FEATURE: what `chosen` are names of */
+    const char *chosen[MOST_CHOSEN];
+    uint32_t chosen_count;
     int quick, json;
 } bench_options;
 
-/* What can be measured; of each the parts take it, tell it and draw it. An exit status, its message told. */
+/* What can be measured; of each the parts take it, tell it and draw it. */
 typedef struct subject {
     const char *name;
-    int takes_scenes;
-    int (*take)(const bench_options *options, int watched);
+    int choice;                                             /* SCENE, FEATURE, or 0 where there is none */
+    int (*take)(const bench_options *options, int watched); /* 0, or an exit status with its message told */
     void (*print)(gltf_text *out);
     void (*json)(gltf_text *out);
-    void (*plot)(gltf_text *out);
+    void (*plot)(gltf_text *out); /* may be null */
 } subject;
 
 static bench_table queries;
 static solver_table solver;
+static feature_table idle;
 
 static int take_queries(const bench_options *o, int watched) {
     return bench_take(&queries, o->quick, watched) == 0
@@ -46,14 +54,21 @@ static void json_queries(gltf_text *out) { bench_json(&queries, out); }
 static void plot_queries(gltf_text *out) { bench_plot(&queries, out); }
 
 static int take_solver(const bench_options *o, int watched) {
-    return solver_take(&solver, o->scenes, o->scene_count, o->quick, watched);
+    return solver_take(&solver, o->chosen, o->chosen_count, o->quick, watched);
 }
 static void print_solver(gltf_text *out) { solver_print(&solver, out); }
 static void json_solver(gltf_text *out) { solver_json(&solver, out); }
 static void plot_solver(gltf_text *out) { solver_plot(&solver, out); }
 
+static int take_features(const bench_options *o, int watched) {
+    return features_take(&idle, o->chosen, o->chosen_count, o->quick, watched);
+}
+static void print_features(gltf_text *out) { features_print(&idle, out); }
+static void json_features(gltf_text *out) { features_json(&idle, out); }
+
 static const subject subjects[] = {{"queries", 0, take_queries, print_queries, json_queries, plot_queries},
-                                   {"solver", 1, take_solver, print_solver, json_solver, plot_solver}};
+                                   {"solver", SCENE, take_solver, print_solver, json_solver, plot_solver},
+                                   {"features", FEATURE, take_features, print_features, json_features, NULL}};
 
 static const subject *find_subject(const char *name) {
     for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
@@ -64,18 +79,27 @@ static const subject *find_subject(const char *name) {
     return NULL;
 }
 
-static int add_scene(bench_options *o, const char *name) {
-    char names[160] = "";
-    for (uint32_t i = 0; i < solver_scene_count; i++) {
-        if (strcmp(name, solver_scenes[i].name) == 0) {
-            o->scenes[o->scene_count % SOLVER_MOST_SCENES] = solver_scenes[i].name;
-            o->scene_count += o->scene_count < SOLVER_MOST_SCENES;
+/* The name of scene or feature i, or null beyond the last. */
+static const char *choice_name(int choice, uint32_t i) {
+    if (choice == SCENE) {
+        return i < solver_scene_count ? solver_scenes[i].name : NULL;
+    }
+    return i < feature_count ? features[i].name : NULL;
+}
+
+static int choose(bench_options *o, int choice, const char *name) {
+    char names[240] = "";
+    const char *known;
+    for (uint32_t i = 0; (known = choice_name(choice, i)) != NULL; i++) {
+        if (strcmp(name, known) == 0) {
+            o->choice = choice;
+            o->chosen[o->chosen_count % MOST_CHOSEN] = known;
+            o->chosen_count += o->chosen_count < MOST_CHOSEN;
             return 0;
         }
-        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i == 0 ? "" : ", ",
-                 solver_scenes[i].name);
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i == 0 ? "" : ", ", known);
     }
-    return tool_fail(TOOL_USAGE, "--scene: \"%s\" is none of %s", name, names);
+    return tool_fail(TOOL_USAGE, "--%s: \"%s\" is none of %s", choice == SCENE ? "scene" : "feature", name, names);
 }
 
 static int run(const subject *s, const bench_options *o) {
@@ -93,7 +117,7 @@ static int run(const subject *s, const bench_options *o) {
         }
         status = tool_write_text("-", &text);
     }
-    return status;
+    return status == 0 && idle.over > 0 ? TOOL_SLOW : status;
 }
 
 int tool_bench(int count, char **arguments) {
@@ -113,7 +137,8 @@ int tool_bench(int count, char **arguments) {
             o.plot = optarg;
             break;
         case SCENE:
-            status = add_scene(&o, optarg);
+        case FEATURE:
+            status = choose(&o, option, optarg);
             break;
         case HELP:
             tool_print_manual("bench");
@@ -127,10 +152,14 @@ int tool_bench(int count, char **arguments) {
     }
     const subject *s = optind + 1 == count ? find_subject(arguments[optind]) : NULL;
     if (s == NULL) {
-        return tool_fail(TOOL_USAGE, "bench: what to measure is to be named, which can be: queries, solver");
+        return tool_fail(TOOL_USAGE, "bench: what to measure is to be named, which can be: queries, solver, features");
     }
-    if (o.scene_count > 0 && !s->takes_scenes) {
-        return tool_fail(TOOL_USAGE, "bench %s: has no scenes to choose from", s->name);
+    if (o.chosen_count > 0 && o.choice != s->choice) {
+        return tool_fail(TOOL_USAGE, "bench %s: has no %s to choose from", s->name,
+                         o.choice == SCENE ? "scenes" : "features");
+    }
+    if (o.plot != NULL && s->plot == NULL) {
+        return tool_fail(TOOL_USAGE, "bench %s: has no plot", s->name);
     }
     if (o.json && o.plot != NULL && strcmp(o.plot, "-") == 0) {
         return tool_fail(TOOL_USAGE, "bench: only one of --json and --plot - can have the standard output");

@@ -1,6 +1,7 @@
 /* Takes the table of `talus bench solver`: own scenes by every setting of the solver, their times and their errors. */
 #include "bench_solver.h"
 
+#include "bench_choice.h"
 #include "figures.h"
 #include "host/clock.h"
 #include "tool.h"
@@ -192,15 +193,6 @@ static int take_scene(solver_table *table, const solver_scene *which, const plan
     return status;
 }
 
-static int is_named(const char *scene, const char *const *names, uint32_t count) {
-    for (uint32_t i = 0; i < count; i++) {
-        if (strcmp(scene, names[i]) == 0) {
-            return 1;
-        }
-    }
-    return count == 0;
-}
-
 int solver_take(solver_table *table, const char *const *names, uint32_t name_count, int quick, int watched) {
     const plan full = {full_settings, sizeof full_settings / sizeof *full_settings, FULL_RUNS},
                small = {quick_settings, sizeof quick_settings / sizeof *quick_settings, QUICK_RUNS};
@@ -209,7 +201,7 @@ int solver_take(solver_table *table, const char *const *names, uint32_t name_cou
     table->count = 0;
     table->runs = p->runs;
     for (uint32_t i = 0; i < solver_scene_count && status == 0; i++) {
-        if (is_named(solver_scenes[i].name, names, name_count)) {
+        if (bench_is_chosen(solver_scenes[i].name, names, name_count)) {
             status = take_scene(table, &solver_scenes[i], p, quick, watched);
         }
     }
