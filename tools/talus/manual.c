@@ -86,8 +86,9 @@ static const char *const run_page[] = {
     "\n"
     "REPORT\n"
     "    The scene's size; the time of talus_world_step alone (monotonic clock); the share of each stage; the\n"
-    "    memory of the world's block and how full its capacities got; what was skipped because nothing asked for\n"
-    "    it; a hash of the world's state, and one of the last frame of the trajectory.\n"
+    "    memory of the world's block and how full its capacities got; what was skipped: bodies, manifolds and\n"
+    "    contacts by steps, and the parts of a step that no step needed, or only so many of them (JSON: not_needed,\n"
+    "    steps_without); a hash of the world's state, and one of the last frame of the trajectory.\n"
     "\n",
     "EXIT STATUS\n"
     "    0  done\n"
