@@ -24,6 +24,10 @@ def check_queries(data):
         positive(row, "ns", "ns_median", "queries")
         if not 0 <= row["error_mean"] <= row["error_most"]:
             fail(f"errors out of order: {row}")
+    for row in data["world"]["rows"]:
+        positive(row, "ns", "ns_median", "found")
+        if row["wrong"] or not 0 <= row["error_most_m"] <= 5e-3:
+            fail(f"a world answers otherwise than its shapes: {row}")
 
 
 def check_solver(data):

@@ -47,7 +47,7 @@ static feature_table idle;
 static int take_queries(const bench_options *o, int watched) {
     return bench_take(&queries, o->quick, watched) == 0
                ? 0
-               : tool_fail(GLTF_FAILED, "bench: there is no memory for the hulls");
+               : tool_fail(GLTF_FAILED, "bench: there is no memory, or a world cannot be asked");
 }
 static void print_queries(gltf_text *out) { bench_print(&queries, out); }
 static void json_queries(gltf_text *out) { bench_json(&queries, out); }
