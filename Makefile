@@ -85,7 +85,7 @@ HAS_CCD := $(shell printf '\#include <ccd/ccd.h>\n' | $(CC) $(CFLAGS) -E - >/dev
 TOOL_LIBS = -lcjson $(if $(HAS_CCD),-lccd) -lm
 $(BUILD)/tools/talus/bench_ccd.o: DEFINES = $(if $(HAS_CCD),-DTALUS_TOOL_CCD)
 
-.PHONY: all lib tool run test bench profile-cost snapshot-cost sanitize fuzz golden golden-update lint format install deps deps-full ci clean help FORCE
+.PHONY: all lib tool run test bench feature-cost snapshot-cost sanitize fuzz golden golden-update lint format install deps deps-full ci clean help FORCE
 .DELETE_ON_ERROR:
 
 all: lib $(if $(HAS_CJSON),tool,no-tool)
@@ -104,7 +104,7 @@ help:
 	@echo "make golden-update  takes this build's hashes as the golden ones"
 	@echo "make fuzz           every fuzzer for FUZZ_TIME=$(FUZZ_TIME) seconds"
 	@echo "make bench          own scenes and where their time goes"
-	@echo "make profile-cost   what the profiler costs when it is on"
+	@echo "make feature-cost   what features cost scenes that have none of them, in instructions"
 	@echo "make snapshot-cost  what a snapshot takes, in bytes and beside a memcpy"
 	@echo "make lint           symbols, includes, headers, format"
 	@echo "make format         clang-format over the tree"
@@ -223,12 +223,15 @@ run: tool
 bench: tool
 	@sh tools/ci/bench.sh $(TOOL)
 
-COSTS = $(BUILD)/tools/bench/profile_cost$(EXE) $(BUILD)/tools/bench/snapshot_cost$(EXE)
-$(COSTS): %$(EXE): %.o $(TOOLS_LIB) $(LIB)
+COST = $(BUILD)/tools/bench/snapshot_cost$(EXE)
+$(COST): %$(EXE): %.o $(TOOLS_LIB) $(LIB)
 	@echo "  LD $@"
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $^ -lm -o $@
-profile-cost snapshot-cost: %-cost: $(BUILD)/tools/bench/%_cost$(EXE)
+snapshot-cost: $(COST)
 	$(RUN) $<
+feature-cost:
+	@sh tools/ci/install-deps.sh full
+	@CC="$(CC)" BUILD="$(BUILD)" sh tools/ci/check-feature-cost.sh
 
 lint: lib
 	@sh tools/ci/check-symbols.sh $(LIB)

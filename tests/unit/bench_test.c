@@ -51,6 +51,21 @@ static void figures(void **state) {
     }
 }
 
+/* Of a pile: found is what looking at each box finds; casts end a millimetre's gap early, which slants along the way.
+ */
+static void world(void **state) {
+    (void)state;
+    const bench_world_table *w = &table.world;
+    assert_int_equal(w->count, BENCH_WORLD_ROWS);
+    for (uint32_t i = 0; i < w->count; i++) {
+        const bench_world_row *r = &w->rows[i];
+        assert_true(r->least > 0.0 && r->median >= r->least && r->spread >= 0.0 && r->found > 0.05);
+        if (r->wrong > 0.0 || r->most_error > (strncmp(r->name, "cast-", 5) == 0 ? 5e-3 : 1e-6)) {
+            fail_msg("%s: %g wrong, off by %g", r->name, r->wrong, r->most_error);
+        }
+    }
+}
+
 static void json(void **state) {
     (void)state;
     gltf_text text = {NULL, 0, 0, 0};
@@ -67,6 +82,15 @@ static void json(void **state) {
         assert_string_equal(name->valuestring, table.rows[i].method->name);
         i++;
     }
+    const cJSON *asked = cJSON_GetObjectItem(root, "world");
+    assert_int_equal(cJSON_GetObjectItem(asked, "boxes")->valueint, 100);
+    i = 0;
+    cJSON_ArrayForEach(row, cJSON_GetObjectItem(asked, "rows")) {
+        assert_string_equal(cJSON_GetObjectItem(row, "query")->valuestring, table.world.rows[i].name);
+        assert_true(fabs(cJSON_GetObjectItem(row, "ns")->valuedouble - table.world.rows[i].least) <= 0.06);
+        i++;
+    }
+    assert_int_equal(i, BENCH_WORLD_ROWS);
     cJSON_Delete(root);
     gltf_text_free(&text);
 }
@@ -94,6 +118,7 @@ static void plot(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(figures), cmocka_unit_test(json), cmocka_unit_test(plot)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(figures), cmocka_unit_test(world), cmocka_unit_test(json),
+                                       cmocka_unit_test(plot)};
     return cmocka_run_group_tests(tests, take, NULL);
 }

@@ -16,7 +16,7 @@
 
 static char message[4096]; /* the last one */
 
-/* In place of the tool's own, which stands beside its main. */
+/* In place of the tool's own. */
 int tool_fail(int status, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);

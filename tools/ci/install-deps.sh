@@ -34,6 +34,7 @@ if [ "$what" = full ] || [ "$what" = matrix ]; then
     need_program python3 python3
     need_program nodejs node
     need_program chromium chromium
+    need_program valgrind valgrind
     need_program qemu-user qemu-aarch64
     need_program gcc-aarch64-linux-gnu aarch64-linux-gnu-gcc
     need_file libc6-dev-arm64-cross /usr/aarch64-linux-gnu/include/stdio.h

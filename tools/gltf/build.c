@@ -127,6 +127,8 @@ static talus_world_def size_world(const gltf_scene *scene, const gltf_build_opti
     def.gravity = scene->gravity;
     def.substeps = options->substeps > 0 ? options->substeps : def.substeps;
     def.iterations = options->iterations > 0 ? options->iterations : def.iterations;
+    def.contact_hertz = options->contact_hertz > 0 ? options->contact_hertz : def.contact_hertz;
+    def.recycle_slack = options->no_kept_manifolds ? 0 : def.recycle_slack;
     def.enable_sleep = options->no_sleep ? 0 : def.enable_sleep;
     def.profile_capacity = options->profile_capacity;
     def.isa = options->isa;
@@ -165,10 +167,10 @@ static int make_world(const gltf_scene *scene, const gltf_build_options *options
     return 1;
 }
 
-static talus_geometry placed(const gltf_scene *scene, const gltf_world *out, uint32_t index) {
+talus_geometry gltf_placed_geometry(const gltf_scene *scene, const gltf_world *world, uint32_t index) {
     talus_geometry geometry = scene->geometries[index].geometry;
     if (scene->geometries[index].hull != GLTF_NONE) {
-        geometry.hull = out->hull_offsets[scene->geometries[index].hull];
+        geometry.hull = world->hull_offsets[scene->geometries[index].hull];
     }
     return geometry;
 }
@@ -177,7 +179,7 @@ static int add_shape(const gltf_scene *scene, gltf_world *out, const gltf_collid
                      const talus_pose *pose, gltf_error *error) {
     talus_shape_def def = talus_shape_def_default();
     talus_shape shape;
-    def.geometry = placed(scene, out, collider->geometry);
+    def.geometry = gltf_placed_geometry(scene, out, collider->geometry);
     def.pose = *pose;
     def.material = collider->material;
     def.filter = collider->filter;
@@ -204,7 +206,7 @@ static int mass_of_shapes(const gltf_scene *scene, const gltf_world *out, range 
         if (collider->body != body || collider->sensor) {
             continue;
         }
-        talus_geometry geometry = placed(scene, out, collider->geometry);
+        talus_geometry geometry = gltf_placed_geometry(scene, out, collider->geometry);
         talus_mass own;
         talus_status status =
             talus_geometry_mass(&geometry, out->world.geometry, out->world.geometry_bytes, DENSITY, &own);

@@ -10,6 +10,8 @@ typedef struct gltf_build_options {
     talus_isa isa;
     int no_sleep;
     uint32_t profile_capacity; /* frames of the profiler's ring */
+    float contact_hertz;       /* 0: the library's default */
+    int no_kept_manifolds;     /* all are computed in every step */
 } gltf_build_options;
 
 /* A world with the memory it lives in. */
@@ -26,6 +28,8 @@ typedef struct gltf_world {
  * others), and room for an event of each sensor and mover. Returns GLTF_OK, or the error with the world empty; it is to
  * be freed in either case. */
 gltf_status gltf_build(const gltf_scene *scene, const gltf_build_options *options, gltf_world *out, gltf_error *error);
+/* Geometry `index` of the scene as the world has it: a hull by its offset in the region. */
+talus_geometry gltf_placed_geometry(const gltf_scene *scene, const gltf_world *world, uint32_t index);
 void gltf_world_free(gltf_world *world);
 
 #endif

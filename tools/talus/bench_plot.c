@@ -1,6 +1,7 @@
 /* The table of `talus bench queries` as SVG: time against vertices at one degree a step, and time against error at a
  * hundred vertices, of distances and of depths. Both axes are logarithmic. */
 #include "bench_queries.h"
+#include "plot.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -12,46 +13,11 @@
 #define PANEL_HEIGHT 270.0
 #define LEAST_ERROR 1e-16 /* what is right to the last bit is drawn here */
 
-typedef struct panel {
-    double x, y;          /* of the left upper corner */
-    double low_x, high_x; /* powers of ten */
-    double low_y, high_y;
-} panel;
-
-static double across(const panel *p, double value) {
-    return p->x + (log10(value) - p->low_x) / (p->high_x - p->low_x) * PANEL_WIDTH;
-}
-
-static double down(const panel *p, double value) {
-    return p->y + PANEL_HEIGHT - (log10(value) - p->low_y) / (p->high_y - p->low_y) * PANEL_HEIGHT;
-}
-
-static void draw_axes(const panel *p, const char *title, const char *x_name, gltf_text *out) {
-    gltf_text_add(out, "<text class=\"t\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", p->x, p->y - 12.0, title);
-    for (double power = ceil(p->low_x); power <= p->high_x; power += p->high_x - p->low_x > 9.0 ? 2.0 : 1.0) {
-        double x = across(p, pow(10.0, power));
-        gltf_text_add(out, "<path class=\"g\" d=\"M%.1f %.1fv%.1f\"/>", x, p->y, PANEL_HEIGHT);
-        gltf_text_add(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">", x, p->y + PANEL_HEIGHT + 16.0);
-        gltf_text_add(out, power < 0.0 ? "1e%.0f</text>\n" : "10<tspan dy=\"-5\" font-size=\"9\">%.0f</tspan></text>\n",
-                      power);
-    }
-    for (double power = ceil(p->low_y); power <= p->high_y; power += 1.0) {
-        static const char *const names[] = {"1 ns",   "10 ns", "100 ns", "1 µs",   "10 µs",
-                                            "100 µs", "1 ms",  "10 ms",  "100 ms", "1 s"};
-        double y = down(p, pow(10.0, power));
-        gltf_text_add(out, "<path class=\"g\" d=\"M%.1f %.1fh%.1f\"/>", p->x, y, PANEL_WIDTH);
-        gltf_text_add(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%s</text>\n", p->x - 6.0, y + 4.0,
-                      power >= 0.0 && power < 10.0 ? names[(int)power] : "");
-    }
-    gltf_text_add(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%s</text>\n", p->x + 0.5 * PANEL_WIDTH,
-                  p->y + PANEL_HEIGHT + 34.0, x_name);
-}
-
 static double error_of(const bench_row *r) { return fmax(r->mean_error, LEAST_ERROR); }
 
 /* The range of a panel's rows, in whole powers of ten. */
 static void fit_range(const bench_table *t, int overlapping, int by_error, double degrees, uint32_t vertices,
-                      panel *p) {
+                      plot_panel *p) {
     p->low_x = p->low_y = HUGE_VAL, p->high_x = p->high_y = -HUGE_VAL;
     for (uint32_t i = 0; i < t->count; i++) {
         const bench_row *r = &t->rows[i];
@@ -72,14 +38,14 @@ static int is_drawn(const bench_row *r, const bench_method *m, int by_error, dou
     return r->method == m && (by_error ? r->vertices == vertices && !m->yes_or_no : r->degrees == degrees);
 }
 
-static void draw_method(const bench_table *t, const bench_method *m, const panel *p, int by_error, double degrees,
+static void draw_method(const bench_table *t, const bench_method *m, const plot_panel *p, int by_error, double degrees,
                         uint32_t vertices, int color, gltf_text *out) {
     int points = 0;
     for (uint32_t i = 0; i < t->count && !by_error; i++) {
         const bench_row *r = &t->rows[i];
         if (is_drawn(r, m, by_error, degrees, vertices)) {
             gltf_text_add(out, points++ ? " " : "<polyline class=\"l\" stroke=\"var(--c%d)\" points=\"", color);
-            gltf_text_add(out, "%.1f,%.1f", across(p, (double)r->vertices), down(p, r->least));
+            gltf_text_add(out, "%.1f,%.1f", plot_across(p, (double)r->vertices), plot_down(p, r->least));
         }
     }
     if (points > 0) {
@@ -90,7 +56,7 @@ static void draw_method(const bench_table *t, const bench_method *m, const panel
         if (is_drawn(r, m, by_error, degrees, vertices)) {
             gltf_text_add(
                 out, "<circle fill=\"var(--c%d)\" cx=\"%.1f\" cy=\"%.1f\" r=\"3.5\"><title>%s, %" PRIu32 " vertices, ",
-                color, across(p, by_error ? error_of(r) : (double)r->vertices), down(p, r->least), m->label,
+                color, plot_across(p, by_error ? error_of(r) : (double)r->vertices), plot_down(p, r->least), m->label,
                 r->vertices);
             gltf_text_add(out, r->degrees == BENCH_RANDOM ? "random" : "%g degrees a step", r->degrees);
             gltf_text_add(out, ": %.0f ns, error %.1e</title></circle>\n", r->least, r->mean_error);
@@ -102,14 +68,15 @@ static void draw_row(const bench_table *t, int overlapping, double y, uint32_t v
     const char *what = overlapping ? "Depth" : "Distance";
     for (int by_error = 0; by_error < 2; by_error++) {
         char title[96];
-        panel p = {70.0 + 470.0 * by_error, y, 0.0, 0.0, 0.0, 0.0};
+        plot_panel p = {70.0 + 470.0 * by_error, y, PANEL_WIDTH, PANEL_HEIGHT, 0.0, 0.0, 0.0, 0.0};
         fit_range(t, overlapping, by_error, 1.0, vertices, &p);
         if (by_error) {
             snprintf(title, sizeof title, "%s: time and error at %" PRIu32 " vertices, every motion", what, vertices);
         } else {
             snprintf(title, sizeof title, "%s: time at 1 degree a step", what);
         }
-        draw_axes(&p, title, by_error ? "mean relative error" : "vertices of each hull", out);
+        plot_axes(&p, title, by_error ? "mean relative error" : "vertices of each hull", plot_number, plot_nanoseconds,
+                  out);
         int color = 0;
         for (int i = 0; i < bench_own_count + bench_ccd_count; i++) {
             const bench_method *m =
@@ -133,17 +100,8 @@ void bench_plot(const bench_table *t, gltf_text *out) {
     for (uint32_t i = 0; i < t->count; i++) {
         vertices = t->rows[i].vertices <= 100u ? t->rows[i].vertices : vertices;
     }
-    gltf_text_add(out,
-                  "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\">\n"
-                  "<style>svg{--b:#fff;--f:#222;--g:#ddd;--c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#b5367a;"
-                  "--c4:#8a6d00;--c5:#666}\n"
-                  "@media(prefers-color-scheme:dark){svg{--b:#16181c;--f:#ddd;--g:#363a42;--c0:#56b4e9;--c1:#ff8a3d;"
-                  "--c2:#2fd0a0;--c3:#f07fb8;--c4:#e6c640;--c5:#aaa}}\n"
-                  "text{font:12px sans-serif;fill:var(--f)}.t{font-weight:bold}.g{stroke:var(--g);fill:none}"
-                  ".l{fill:none;stroke-width:1.5}</style>\n"
-                  "<rect width=\"100%%\" height=\"100%%\" fill=\"var(--b)\"/>\n",
-                  WIDTH, HEIGHT, WIDTH, HEIGHT);
+    plot_begin(WIDTH, HEIGHT, out);
     draw_row(t, 0, 40.0, vertices, out);
     draw_row(t, 1, 410.0, vertices, out);
-    gltf_text_add(out, "</svg>\n");
+    plot_end(out);
 }

@@ -262,5 +262,5 @@ int bench_take(bench_table *table, int quick, int watched) {
     }
     free(room);
     free(poses);
-    return status;
+    return status == 0 ? bench_world_take(&table->world, quick) : status;
 }

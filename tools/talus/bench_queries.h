@@ -3,6 +3,7 @@
 #ifndef TALUS_TOOL_BENCH_QUERIES_H
 #define TALUS_TOOL_BENCH_QUERIES_H
 
+#include "bench_world.h"
 #include "collide/collide.h"
 #include "gltf/text.h"
 #include "talus/query.h"
@@ -56,9 +57,11 @@ typedef struct bench_row {
 typedef struct bench_table {
     bench_row rows[BENCH_MOST_ROWS];
     uint32_t count, runs;
+    bench_world_table world;
 } bench_table;
 
-/* 0, or -1 for a lack of memory. Says on the standard error how far it is where `watched`. */
+/* 0, or -1 for a lack of memory, or where a query of the world fails. Says on the standard error how far it is where
+ * `watched`. */
 int bench_take(bench_table *table, int quick, int watched);
 void bench_print(const bench_table *table, gltf_text *out);
 void bench_json(const bench_table *table, gltf_text *out);

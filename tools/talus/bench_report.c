@@ -65,6 +65,8 @@ void bench_print(const bench_table *t, gltf_text *out) {
                   "Errors are relative, against double precision, over all vertex counts; of libccd's GJK, which only\n"
                   "says whether hulls touch, the share of wrong answers.%s\n",
                   bench_ccd_count ? "" : " The tool was built without libccd: its rows are missing.");
+    gltf_text_add(out, "\n");
+    bench_world_print(&t->world, out);
 }
 
 void bench_json(const bench_table *t, gltf_text *out) {
@@ -84,5 +86,7 @@ void bench_json(const bench_table *t, gltf_text *out) {
                       ",\"ns\":%.1f,\"ns_median\":%.1f,\"ns_spread\":%.1f,\"error_mean\":%.3e,\"error_most\":%.3e}",
                       r->queries, r->least, r->median, r->spread, r->mean_error, r->most_error);
     }
-    gltf_text_add(out, "]}\n");
+    gltf_text_add(out, "],");
+    bench_world_json(&t->world, out);
+    gltf_text_add(out, "}\n");
 }

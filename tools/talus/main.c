@@ -5,19 +5,8 @@
 #include "talus/version.h"
 
 #include <errno.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-int tool_fail(int status, const char *format, ...) {
-    va_list arguments;
-    fputs("talus: ", stderr);
-    va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    fputc('\n', stderr);
-    return status;
-}
 
 int tool_write_text(const char *path, gltf_text *text) {
     int status = 0;

@@ -52,14 +52,19 @@ static void print_memory(const gltf_world *world, const run_result *r) {
 static void print_skipped(const run_result *r) {
     const talus_counters *c = &r->last;
     printf("\nskipped, over all steps\n");
-    printf("  bodies asleep      %10" PRIu64 " of %" PRIu64 " (%.1f%%)\n", r->sleeping_body_steps, r->body_steps,
-           percent(r->sleeping_body_steps, r->body_steps));
+    const skipped *s = &r->skips;
+    gltf_text parts = {NULL, 0, 0, 0};
+    printf("  static bodies      %10" PRIu64 " of %" PRIu64 "\n", s->static_body_steps, s->static_body_steps);
+    printf("  bodies asleep      %10" PRIu64 " of %" PRIu64 " (%.1f%%)\n", s->sleeping_body_steps, s->body_steps,
+           percent(s->sleeping_body_steps, s->body_steps));
     uint64_t manifolds = r->manifolds_made + r->manifolds_kept + r->contacts_sleeping;
     printf("  manifolds kept     %10" PRIu64 " of %" PRIu64 " (%.1f%%)\n", r->manifolds_kept, manifolds,
            percent(r->manifolds_kept, manifolds));
     printf("  contacts asleep    %10" PRIu64 " of %" PRIu64 " (%.1f%%)\n", r->contacts_sleeping, manifolds,
            percent(r->contacts_sleeping, manifolds));
-    printf("  restitution        %10" PRIu64 " of %" PRIu32 " steps\n", r->steps_without_restitution, r->steps);
+    skipped_print(s, &parts);
+    printf("done in how many steps of %" PRIu64 "\n%s", s->steps, parts.size > 0 && !parts.failed ? parts.data : "");
+    gltf_text_free(&parts);
     printf("\nworst errors of the second half: overlap %.2f mm, joints %.2f mm and %.4f rad\n",
            1e3 * (double)r->worst.overlap, 1e3 * (double)r->worst.joint_linear, (double)r->worst.joint_angular);
     printf("\nafter the last step: %" PRIu32 " bodies awake, %" PRIu32 " asleep, %" PRIu32 " islands, %" PRIu32
@@ -133,8 +138,9 @@ static void add_counters(gltf_text *out, const run_result *r) {
     add_count(out, "manifolds_made_total", r->manifolds_made);
     add_count(out, "manifolds_kept_total", r->manifolds_kept);
     add_count(out, "contacts_sleeping_total", r->contacts_sleeping);
-    add_count(out, "sleeping_body_steps", r->sleeping_body_steps);
-    add_count(out, "body_steps", r->body_steps);
+    add_count(out, "sleeping_body_steps", r->skips.sleeping_body_steps);
+    add_count(out, "static_body_steps", r->skips.static_body_steps);
+    add_count(out, "body_steps", r->skips.body_steps);
     add_count(out, "pairs_made_total", r->pairs_made);
     add_count(out, "proxies_refit_total", r->proxies_refit);
     add_count(out, "sensor_begins", r->sensor_begins);
@@ -199,6 +205,7 @@ void report_json(const run_options *options, const gltf_scene *scene, const gltf
         gltf_text_add(&out, "}");
     }
     add_counters(&out, r);
+    skipped_json(&r->skips, &out);
     add_notes(&out, scene, r);
     gltf_text_add(&out, "}");
     if (out.failed) {

@@ -66,7 +66,11 @@ typedef struct runner {
     trajectory_state *states;
     talus_pose *poses;
     uint32_t frame_every; /* steps between two frames of the animation */
+    float margin;         /* m, the world's speculative one */
+    float flown;          /* m, what the fastest body flies in a step now */
 } runner;
+
+static float larger(float a, float b) { return a > b ? a : b; }
 
 static int is_finite_state(const trajectory_state *s) {
     const float sum = (s->pose.position.x + s->pose.position.y + s->pose.position.z) * 0.0f +
@@ -78,11 +82,14 @@ static int is_finite_state(const trajectory_state *s) {
 
 static void take_states(runner *r, uint32_t step, double ms) {
     int finite = 1;
+    r->flown = 0;
     for (uint32_t i = 0; i < r->scene->body_count; i++) {
         trajectory_state *s = &r->states[i];
         talus_body_get_pose(&r->world->world, r->world->bodies[i], &s->pose);
         talus_body_get_velocity(&r->world->world, r->world->bodies[i], &s->linear, &s->angular);
         r->poses[i] = s->pose;
+        r->flown = larger(r->flown, r->result->dt * sqrtf(s->linear.x * s->linear.x + s->linear.y * s->linear.y +
+                                                          s->linear.z * s->linear.z));
         finite &= is_finite_state(s);
     }
     if (!finite && r->result->not_finite_step == 0) {
@@ -94,7 +101,9 @@ static void take_states(runner *r, uint32_t step, double ms) {
     }
 }
 
-static void take_counters(run_result *out, const talus_world *world) {
+static void take_counters(const runner *r) {
+    run_result *out = r->result;
+    const talus_world *world = &r->world->world;
     talus_counters c;
     memset(&c, 0, sizeof c);
     talus_world_get_counters(world, &c);
@@ -107,17 +116,13 @@ static void take_counters(run_result *out, const talus_world *world) {
     out->contacts_sleeping += c.contacts_sleeping;
     out->pairs_made += c.pairs_made;
     out->proxies_refit += c.proxies_refit;
-    out->body_steps += (uint64_t)c.awake_bodies + c.sleeping_bodies;
-    out->sleeping_body_steps += c.sleeping_bodies;
-    out->steps_without_restitution += c.restitution_skipped != 0;
+    skipped_take(&out->skips, r->scene, &c, r->flown, r->margin);
     talus_events events;
     if (talus_world_get_events(world, &events) == TALUS_OK) {
         out->sensor_begins += events.sensor_begin_count;
         out->sensor_ends += events.sensor_end_count;
     }
 }
-
-static float larger(float a, float b) { return a > b ? a : b; }
 
 static void take_errors(run_result *out, const talus_world *world, uint32_t step) {
     talus_errors e;
@@ -175,7 +180,7 @@ static int run_steps(runner *r) {
             out->stage_ns[i] += profile.stage[i];
         }
         take_states(r, step, out->step_ms[step - 1]);
-        take_counters(out, &r->world->world);
+        take_counters(r);
         take_errors(out, &r->world->world, step);
         show_progress(r->options, step, out->steps, begin, &shown);
     }
@@ -206,6 +211,10 @@ static int run_world(const run_options *options, const gltf_scene *scene, gltf_w
     r.scene = scene;
     r.world = world;
     r.result = result;
+    talus_world_def def;
+    memset(&def, 0, sizeof def);
+    talus_world_get_def(&world->world, &def);
+    r.margin = def.speculative_margin;
     r.frame_every = (uint32_t)fmax(1, floor(1 / (FRAMES_PER_SECOND * (double)result->dt) + 0.5));
     r.states = calloc((size_t)scene->body_count + 1, sizeof *r.states);
     r.poses = calloc((size_t)scene->body_count + 1, sizeof *r.poses);

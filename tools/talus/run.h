@@ -3,6 +3,7 @@
 #define TALUS_TOOL_RUN_H
 
 #include "figures.h"
+#include "skipped.h"
 #include "source.h"
 
 typedef struct run_options {
@@ -24,7 +25,7 @@ typedef struct run_result {
     talus_counters last; /* after the last step */
     uint64_t dropped_contacts, dropped_events, dropped_rows;
     uint64_t manifolds_made, manifolds_kept, contacts_sleeping, pairs_made, proxies_refit;
-    uint64_t body_steps, sleeping_body_steps, steps_without_restitution;
+    skipped skips;
     uint64_t sensor_begins, sensor_ends;
     talus_errors worst;       /* over the second half of the steps, when what falls has fallen */
     uint32_t not_finite_step; /* the first one with a NaN or infinity in its states; 0: none */

@@ -44,6 +44,80 @@ static void make_chain(author *a) {
     parts_chain(a, gltf_d3(4, 20, 6), gltf_d3(0, -0.5, 0), 24, 0.5, 800, material); /* hanging */
 }
 
+/* A card that leans over to the right, or left (side -1), to an apex; `angle` is that to the upright (rad). */
+static void add_leaning(author *a, author_part card, gltf_double3 apex, double long_, double thick, double angle,
+                        int side, int material) {
+    double s = sin(angle), c = cos(angle);
+    gltf_double3 p =
+        gltf_d3(apex.x - side * (0.5 * thick * c + 0.5 * long_ * s), apex.y - 0.5 * (long_ * c + thick * s), apex.z);
+    author_add_body(a, card, parts_pose(p, author_rotation(0, 0, 1, -side * angle)), material, NULL);
+}
+
+/* Storeys of pairs of cards that lean on each other, a board on all of them for the next. */
+static void make_cards(author *a) {
+    const double size = 1, thick = 0.03, angle = 20 * PARTS_PI / 180;
+    const double height = size * cos(angle) + thick * sin(angle),
+                 apart = 2.1 * (size * sin(angle) + thick * cos(angle));
+    int material = author_material(a, 0.6, 0, NULL);
+    parts_ground(a, 20, material);
+    author_part card = author_box(a, thick, size, 0.7);
+    for (int storey = 0; storey < 4; storey++) {
+        double top = (storey + 1) * height + storey * thick;
+        for (int i = 0; i < 4 - storey; i++) {
+            gltf_double3 apex = gltf_d3(apart * (i - (3 - storey) / 2.0), top, 0);
+            add_leaning(a, card, apex, size, thick, angle, 1, material);
+            add_leaning(a, card, apex, size, thick, angle, -1, material);
+        }
+        if (storey < 3) {
+            author_add_body(a, author_box(a, (4 - storey) * apart, thick, 0.7), author_at(0, top + thick / 2, 0),
+                            material, NULL);
+        }
+    }
+}
+
+/* Half a ring of wedges that holds itself up. */
+static void make_arch(author *a) {
+    enum { WEDGES = 15 };
+    const double inner = 3, outer = 4, half = PARTS_PI / WEDGES / 2, middle = (inner + outer) / 2;
+    int material = author_material(a, 0.7, 0, NULL);
+    parts_ground(a, 20, material);
+    gltf_double3 corners[8];
+    for (int i = 0; i < 8; i++) { /* about the wedge's middle, the ring's axis to -y */
+        double radius = (i & 1 ? outer : inner) / cos(half), angle = i & 2 ? half : -half;
+        corners[i] = gltf_d3(radius * sin(angle), radius * cos(angle) - middle, i & 4 ? 0.5 : -0.5);
+    }
+    author_part wedge = author_hull(a, corners, 8);
+    for (int i = 0; i < WEDGES; i++) {
+        double angle = (i + 0.5) * 2 * half - PARTS_PI / 2;
+        author_add_body(a, wedge,
+                        author_turned(middle * sin(angle), middle * cos(angle), 0, author_rotation(0, 0, 1, -angle)),
+                        material, NULL);
+    }
+}
+
+/* A closed drum that turns as it is told to, half full. */
+static void make_tumbler(author *a) {
+    const double half = 2.5, deep = 1, thick = 0.4;
+    parts_random random = {13};
+    int material = author_material(a, 0.5, 0, NULL);
+    parts_ground(a, 10, material);
+    int drum = author_add_compound(a, author_at(0, 4.5, 0), "\"isKinematic\":true,\"angularVelocity\":[0,0,0.8]");
+    author_part wall = author_box(a, 2 * half + 2 * thick, thick, 2 * deep),
+                lid = author_box(a, 2 * half, 2 * half, thick);
+    for (int side = 0; side < 4; side++) {
+        double angle = side * PARTS_PI / 2, r = half + thick / 2;
+        author_add_part(a, drum, wall,
+                        author_turned(-r * sin(angle), r * cos(angle), 0, author_rotation(0, 0, 1, angle)), material);
+    }
+    author_add_part(a, drum, lid, author_at(0, 0, deep + thick / 2), material);
+    author_add_part(a, drum, lid, author_at(0, 0, -deep - thick / 2), material);
+    author_part box = author_box(a, 0.4, 0.3, 0.3);
+    for (uint32_t i = 0; i < 216; i++) {
+        author_add_body(a, i % 4 ? box : author_sphere(a, 0.18),
+                        parts_pose(parts_layer(i, 9, 4, 0.49, 2.3), parts_rotation(&random)), material, NULL);
+    }
+}
+
 static void make_bridge(author *a) {
     int material = author_material(a, 0.6, 0, NULL);
     parts_ground(a, 40, material);
@@ -225,10 +299,12 @@ typedef struct scene_maker {
     uint32_t steps; /* of 1/60 s */
 } scene_maker;
 
-#define SCENES 13
+#define SCENES 16
 
 static const scene_info infos[SCENES] = {
+    {"arch", "15 wedges that hold each other up; they should stay"},
     {"bridge", "48 hinged planks between two posts, loaded with boxes"},
+    {"cards", "a house of 23 cards, four storeys; they should stay"},
     {"chain", "a chain with a ball 100 times as heavy as a link, released level, and a hanging one"},
     {"dominoes", "200 stones in a spiral; the first one falls"},
     {"heap", "1000 boxes and balls dropped into a bin"},
@@ -240,13 +316,15 @@ static const scene_info infos[SCENES] = {
     {"showcase", "a bit of everything: what the library can do, in one run"},
     {"stack", "20 boxes on top of each other; they should stay"},
     {"tower", "a tower of planks, hit by a ball"},
+    {"tumbler", "216 boxes and balls in a drum that turns"},
     {"wheel", "a paddle wheel turned by a motor among 120 balls"},
 };
 
 static const scene_maker makers[SCENES] = {
-    {make_bridge, 600}, {make_chain, 600},   {make_dominoes, 1000}, {make_heap, 600},   {make_masses, 600},
-    {make_pile, 500},   {make_pyramid, 300}, {make_ragdolls, 400},  {make_shapes, 400}, {make_showcase, 900},
-    {make_stack, 600},  {make_tower, 400},   {make_wheel, 400},
+    {make_arch, 600},      {make_bridge, 600},   {make_cards, 600},   {make_chain, 600},
+    {make_dominoes, 1000}, {make_heap, 600},     {make_masses, 600},  {make_pile, 500},
+    {make_pyramid, 300},   {make_ragdolls, 400}, {make_shapes, 400},  {make_showcase, 900},
+    {make_stack, 600},     {make_tower, 400},    {make_tumbler, 600}, {make_wheel, 400},
 };
 
 const scene_info *scenes_list(size_t *count) {
