@@ -49,6 +49,7 @@ void tl_collide_boxes(const tl_core *a, const tl_core *b, float margin, tl_pair_
     out->count = 0;
     out->gap = m.gap;
     out->normal = tl_v(0.0f, 1.0f, 0.0f);
+    cache->word[0] = cache->word[0] ? cache->word[0] : TL_CACHE_LOOKED;
     if (m.decided && m.count == 0.0f) {
         return;
     }
