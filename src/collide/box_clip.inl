@@ -317,10 +317,12 @@ static wf bx_clip(const bx_faces *f, wf margin, wf tolerance, bx_points *out) {
     }
     for (int i = 0; i < BX_SLOTS; i++) {
         s.is[i] = wm_and(s.is[i], wf_le(s.z[i], margin));
-        for (int j = 0; j < TL_MANIFOLD_POINTS && j <= i; j++) {
-            bx_keep(out, j, wm_and(s.is[i], wf_eq(count, wf_set1((float)j))), &s, i);
+        if (wm_any(s.is[i])) {
+            for (int j = 0; j < TL_MANIFOLD_POINTS; j++) {
+                bx_keep(out, j, wm_and(s.is[i], wf_eq(count, wf_set1((float)j))), &s, i);
+            }
+            count = wf_add(count, wf_where(s.is[i], one));
         }
-        count = wf_add(count, wf_where(s.is[i], one));
     }
     wm many = wf_lt(four, count);
     if (wm_any(many)) {

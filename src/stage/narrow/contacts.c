@@ -1,6 +1,7 @@
 /* Contacts: their manifolds are made anew where they moved more than the slack. */
 #include <string.h>
 
+#include "base/prefetch.h"
 #include "base/sort.h"
 #include "stage/broad/refit.h"
 #include "stage/narrow/batch.h"
@@ -139,6 +140,13 @@ static void store_one_points(tl_step *step, const tl_pair_batch *batch, const tl
     }
 }
 
+/* They are needed when the batch is full. */
+static void prefetch_points(const tl_header *h, uint32_t c) {
+    tl_prefetch(&tl_points(h)[c].p[0]);
+    tl_prefetch(&tl_points(h)[c].p[2]);
+    tl_prefetch(&tl_heads(h)[c]);
+}
+
 /* Those lanes of a batch, whose shapes are placed, that are not done. */
 static void make_one_by_one(tl_step *step, const tl_pair_batch *batch, uint32_t done, ended *e) {
     tl_header *h = step->h;
@@ -220,14 +228,14 @@ static uint32_t slack_of(uint32_t contact, const tl_contact_meta *meta, uint32_t
 static void update_contact(tl_step *step, tl_pair_batch *batches, uint32_t c, ended *e) {
     tl_header *h = step->h;
     const tl_contact_meta *meta = &tl_contacts(h)[c];
-    float gap;
-    if (tl_parted_by_balls(step, meta->body_a, meta->body_b, &gap)) {
-        note_ended(e, c, gap);
-        return;
-    }
     tl_pair_batch *batch = &batches[tl_batch_kind_of(h, meta->shape_a, meta->shape_b)];
-    if (tl_batch_add(h, batch, c, meta->shape_a, meta->shape_b)) {
+    float gap;
+    if (batch->kind == TL_BATCH_OTHER && tl_parted_by_balls(step, meta->body_a, meta->body_b, &gap)) {
+        note_ended(e, c, gap); /* in lanes the query itself costs no more */
+    } else if (tl_batch_add(h, batch, c, meta->shape_a, meta->shape_b)) {
         run_batch(step, batch, e);
+    } else {
+        prefetch_points(h, c);
     }
 }
 
