@@ -3,14 +3,15 @@
 #include "stage/store/lists.h"
 
 tl_batch_kind tl_batch_kind_of(const tl_header *h, uint32_t shape_a, uint32_t shape_b) {
-    talus_shape_type a = tl_shape_geometry(h)[shape_a].type, b = tl_shape_geometry(h)[shape_b].type;
+    const talus_geometry *ga = &tl_shape_geometry(h)[shape_a], *gb = &tl_shape_geometry(h)[shape_b];
+    talus_shape_type a = ga->type, b = gb->type;
     if (a == TALUS_SPHERE && (b == TALUS_SPHERE || b == TALUS_BOX)) {
         return b == TALUS_SPHERE ? TL_BATCH_BALLS : TL_BATCH_BALL_BOX;
     }
     if (a == TALUS_BOX && (b == TALUS_SPHERE || b == TALUS_BOX)) {
         return b == TALUS_SPHERE ? TL_BATCH_BOX_BALL : TL_BATCH_BOXES;
     }
-    return TL_BATCH_OTHER;
+    return tl_are_capsules(ga, gb) ? TL_BATCH_CAPSULES : TL_BATCH_OTHER;
 }
 
 void tl_batch_clear(tl_pair_batch *batch) { batch->count = batch->senses = batch->fixed_a = batch->fixed_b = 0; }

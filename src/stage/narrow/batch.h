@@ -8,6 +8,7 @@ typedef enum tl_batch_kind {
     TL_BATCH_BALLS,
     TL_BATCH_BALL_BOX, /* a is the ball */
     TL_BATCH_BOX_BALL,
+    TL_BATCH_CAPSULES, /* of one radius each, or one a ball */
     TL_BATCH_BOXES,
     TL_BATCH_OTHER, /* whose shapes are placed only */
     TL_BATCH_KINDS
@@ -26,11 +27,13 @@ typedef struct tl_pair_batch {
     float margin[TL_LANES];                             /* m */
 } tl_pair_batch;
 
-/* Manifolds of one point each: gap (m) is its separation, or how far apart the shapes are beyond the margin (m). */
+/* Manifolds of one point each: gap (m) is its separation, or how far apart the shapes are beyond the margin (m). Lanes
+ * that are not decided take the query of a single pair. */
 typedef struct tl_one_points {
     tl_row8 point[TL_LANES];  /* on a and on b, in the frames of the bodies */
     tl_row8 normal[TL_LANES]; /* in the frame of body a */
     float gap[TL_LANES], margin[TL_LANES];
+    uint32_t decided; /* a bit a lane */
 } tl_one_points;
 
 /* Manifolds of two boxes. Points and normals are set of contacts only: the points as they keep them, with the impulses

@@ -1,6 +1,10 @@
-/* Eight pairs at a time: where their shapes stand, and the manifolds of balls with balls and with boxes. The order of
- * operations is that of the queries of a single pair (collide/ball.c, base/vec.h), so that the bits are the same. */
+/* Eight pairs at a time: where their shapes stand, and the manifolds of one point, of balls, capsules and boxes. The
+ * order of operations is that of the queries of a single pair (collide/ball.c, base/vec.h), so that the bits are the
+ * same. */
+#include "collide/general.h"
 #include "stage/narrow/batch.h"
+
+#include "collide/capsules.inl"
 
 typedef struct pose8 {
     v8 p;
@@ -179,5 +183,32 @@ static void collide_balls(const tl_step *step, const tl_pair_batch *batch, tl_on
         radius = b[1];
         at = v8_mad(s.b_in_a.p, tl_f8_mul(half, tl_f8_add(distance, radius)), n);
     }
+    out->decided = 0xffu;
     store_points(batch, &s, n, at, tl_f8_sub(distance, radius), out);
+}
+
+/* Half of the axis, 0 of a ball, and the radius. */
+static void capsules_load(const tl_step *step, const uint32_t *shape, tl_f8 *half, tl_f8 *radius) {
+    const float *geometry = (const float *)(const void *)tl_shape_geometry(step->h);
+    tl_f8 g[8];
+    tl_f8_load_rows_stride(geometry, sizeof(talus_geometry) / sizeof(float), shape, g);
+    tl_m8 ball = tl_i8_eq(tl_i8_bits_of_f8(g[0]), tl_i8_set1(TALUS_SPHERE));
+    *half = tl_f8_select(ball, tl_f8_zero(), g[2]);
+    *radius = tl_f8_select(ball, g[1], g[3]);
+}
+
+static void collide_capsules(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out) {
+    placed8 s = place8(step, batch);
+    cp_capsules x;
+    cp_touch m;
+    capsules_load(step, batch->shape_a, &x.ha, &x.ra);
+    capsules_load(step, batch->shape_b, &x.hb, &x.rb);
+    v8 t = s.b_in_a.p, ub = q8_rotate(s.b_in_a.q, v8_of(tl_f8_zero(), x.hb, tl_f8_zero()));
+    x.t[0] = t.x, x.t[1] = t.y, x.t[2] = t.z;
+    x.ub[0] = ub.x, x.ub[1] = ub.y, x.ub[2] = ub.z;
+    x.margin = s.margin;
+    cp_collide(&x, &m);
+    v8 at = v8_of(cp_midway(&x, &m, 0), cp_midway(&x, &m, 1), cp_midway(&x, &m, 2));
+    out->decided = tl_m8_bits(m.decided);
+    store_points(batch, &s, v8_of(m.n[0], m.n[1], m.n[2]), at, m.gap, out);
 }

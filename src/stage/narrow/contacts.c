@@ -126,16 +126,22 @@ static void store_one_points(tl_step *step, const tl_pair_batch *batch, const tl
     tl_header *h = step->h;
     for (uint32_t k = 0; k < batch->count; k++) {
         uint32_t c = batch->item[k];
+        if (!(out->decided >> k & 1u)) {
+            continue;
+        }
         if (!(out->gap[k] <= out->margin[k])) {
             h->counters.manifolds_made++;
             note_ended(e, c, out->gap[k]);
             continue;
         }
-        tl_contact_point_record *r = &tl_points(h)[c].p[0];
-        float impulse = r->impulse; /* a ball's only point is the one it had */
-        memcpy(r->a, out->point[k].f, 6u * sizeof(float));
-        r->impulse = impulse;
+        tl_contact_points *points = &tl_points(h)[c];
+        /* an only point has the number 0 and keeps its impulse */
+        if (tl_contacts(h)[c].count != 1 || points->p[0].id != 0) {
+            memset(points, 0, sizeof *points);
+        }
+        memcpy(points->p[0].a, out->point[k].f, 6u * sizeof(float));
         memcpy(tl_heads(h)[c].normal, out->normal[k].f, 3u * sizeof(float));
+        tl_contacts(h)[c].count = 1;
         kept_until_moved(h, &tl_contacts(h)[c]);
     }
 }
@@ -189,31 +195,27 @@ static void store_boxes(tl_step *step, const tl_pair_batch *batch, const tl_box_
     }
 }
 
-static void run_boxes(tl_step *step, const tl_kernels *kernels, tl_pair_batch *batch, ended *e) {
-    tl_box_manifolds out;
-    kernels->collide_boxes(step, batch, &out);
-    store_boxes(step, batch, &out, e);
-    if (~out.decided & ((1u << batch->count) - 1u)) {
-        kernels->place_pairs(step, batch);
-        make_one_by_one(step, batch, out.decided, e);
-    }
-}
-
 static void run_batch(tl_step *step, tl_pair_batch *batch, ended *e) {
     const tl_kernels *kernels = tl_kernels_of((talus_isa)step->h->isa);
     if (batch->count == 0) {
         return;
     }
     tl_batch_fill(batch);
-    if (batch->kind == TL_BATCH_OTHER) {
-        kernels->place_pairs(step, batch);
-        make_one_by_one(step, batch, 0, e);
-    } else if (batch->kind == TL_BATCH_BOXES) {
-        run_boxes(step, kernels, batch, e);
-    } else {
+    uint32_t decided = 0;
+    if (batch->kind == TL_BATCH_BOXES) {
+        tl_box_manifolds out;
+        kernels->collide_boxes(step, batch, &out);
+        store_boxes(step, batch, &out, e);
+        decided = out.decided;
+    } else if (batch->kind != TL_BATCH_OTHER) {
         tl_one_points out;
-        kernels->collide_balls(step, batch, &out);
+        (batch->kind == TL_BATCH_CAPSULES ? kernels->collide_capsules : kernels->collide_balls)(step, batch, &out);
         store_one_points(step, batch, &out, e);
+        decided = out.decided;
+    }
+    if (~decided & ((1u << batch->count) - 1u)) {
+        kernels->place_pairs(step, batch);
+        make_one_by_one(step, batch, decided, e);
     }
     tl_batch_clear(batch);
 }

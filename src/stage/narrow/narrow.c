@@ -86,11 +86,16 @@ static void look_at_pair(tl_step *step, new_touches *found, uint32_t pair) {
     note_looked(step, found, pair, touch, gap);
 }
 
-/* What a batch of pairs tells: of lane k whether there are points, else the gap (m). */
-static void note_lane(tl_step *step, new_touches *found, const tl_pair_batch *batch, uint32_t k, int points,
-                      float gap) {
+/* What a batch of pairs tells of lane k: whether it is decided there, and whether there are points, else the gap (m).
+ */
+static void note_lane(tl_step *step, new_touches *found, const tl_pair_batch *batch, uint32_t k, uint32_t decided,
+                      int points, float gap) {
     tl_header *h = step->h;
     tl_pair_cache *hint = &tl_pair_hints(h)[batch->item[k]];
+    if (!decided) {
+        look_at_pair(step, found, batch->item[k]);
+        return;
+    }
     int touch = points && may_touch(step, batch->shape_a[k], batch->shape_b[k]);
     h->counters.manifolds_made++;
     h->counters.manifolds_first += hint->word[0] == 0u;
@@ -108,17 +113,13 @@ static void look_at_batch(tl_step *step, new_touches *found, tl_pair_batch *batc
         tl_box_manifolds out;
         kernels->collide_boxes(step, batch, &out);
         for (uint32_t k = 0; k < batch->count; k++) {
-            if (out.decided >> k & 1u) {
-                note_lane(step, found, batch, k, out.count[k] > 0.0f, out.gap[k]);
-            } else {
-                look_at_pair(step, found, batch->item[k]);
-            }
+            note_lane(step, found, batch, k, out.decided >> k & 1u, out.count[k] > 0.0f, out.gap[k]);
         }
     } else {
         tl_one_points out;
-        kernels->collide_balls(step, batch, &out);
+        (batch->kind == TL_BATCH_CAPSULES ? kernels->collide_capsules : kernels->collide_balls)(step, batch, &out);
         for (uint32_t k = 0; k < batch->count; k++) {
-            note_lane(step, found, batch, k, out.gap[k] <= out.margin[k], out.gap[k]);
+            note_lane(step, found, batch, k, out.decided >> k & 1u, out.gap[k] <= out.margin[k], out.gap[k]);
         }
     }
     tl_batch_clear(batch);
