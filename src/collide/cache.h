@@ -7,8 +7,8 @@
 #include <string.h>
 
 #define TL_CACHE_AXIS 0x41584953u    /* a direction from A to B, in A's frame */
+#define TL_CACHE_LOOKED 0x4c4f4f4bu  /* nothing, but that the pair is not new */
 #define TL_CACHE_SIMPLEX 0x53494d00u /* + 1..3: vertices of A and of B, 16 bits each, a word a pair */
-#define TL_CACHE_BOXES 0x424f0000u   /* + 0..14: the number of two boxes' best axis */
 
 static inline talus_vec3 tl_cache_axis(const tl_pair_cache *cache, talus_vec3 otherwise) {
     talus_vec3 n;

@@ -1,34 +1,8 @@
-/* Two capsules: the nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9). Side by side they
- * meet in two points. Metres. */
+/* One pair of capsules or of a capsule and a ball (capsules.inl). Side by side capsules meet in two points. Metres. */
+#include "base/width_one.h"
 #include "collide/round.h"
 
-/* The squared sine of 2 degrees: segments closer to parallel meet in two points. */
-#define PARALLEL_SIN2 0.0012f
-
-void tl_segment_segment(talus_vec3 ca, talus_vec3 ua, talus_vec3 cb, talus_vec3 ub, talus_vec3 *pa, talus_vec3 *pb) {
-    /* centres and half axes: parameters run from -1 to 1 */
-    talus_vec3 d = tl_sub(cb, ca);
-    float aa = tl_dot(ua, ua), bb = tl_dot(ub, ub), ab = tl_dot(ua, ub), da = tl_dot(d, ua), db = tl_dot(d, ub);
-    float s = 0.0f, t = 0.0f;
-    talus_vec3 x = tl_cross(ua, ub);
-    float det = tl_length2(x);
-    if (det > 1e-7f * aa * bb) {
-        s = tl_clamp(tl_dot(tl_cross(d, ub), x) / det, -1.0f, 1.0f);
-    } else if (aa > 0.0f) {
-        s = tl_clamp(da / aa, -1.0f, 1.0f);
-    }
-    if (bb > 0.0f) {
-        t = (s * ab - db) / bb;
-        if (t < -1.0f || t > 1.0f) {
-            t = tl_clamp(t, -1.0f, 1.0f);
-            s = aa > 0.0f ? tl_clamp((t * ab + da) / aa, -1.0f, 1.0f) : 0.0f;
-        }
-    } else if (aa > 0.0f) {
-        s = tl_clamp(da / aa, -1.0f, 1.0f);
-    }
-    *pa = tl_mad(ca, s, ua);
-    *pb = tl_mad(cb, t, ub);
-}
+#include "collide/capsules.inl"
 
 static void set_ends(tl_feature *f, talus_vec3 c, talus_vec3 u, float offset, talus_vec3 n) {
     talus_vec3 m = tl_mad(c, offset, n);
@@ -41,44 +15,53 @@ static void set_ends(tl_feature *f, talus_vec3 c, talus_vec3 u, float offset, ta
     f->edge[0] = f->edge[1] = 0;
 }
 
+static void set_point(const cp_capsules *x, const cp_touch *m, tl_manifold *out) {
+    out->count = 1;
+    out->point[0].separation = m->gap;
+    out->point[0].position = tl_v(cp_midway(x, m, 0), cp_midway(x, m, 1), cp_midway(x, m, 2));
+    out->point[0].id = 0;
+}
+
+/* A normal where the axes cross, or run into one another. */
+static talus_vec3 normal_across(talus_vec3 ua, talus_vec3 ub, talus_vec3 between) {
+    talus_vec3 x = tl_cross(ua, ub);
+    float aa = tl_length2(ua), bb = tl_length2(ub);
+    talus_vec3 axis = tl_normalize_or(aa >= bb ? ua : ub, tl_v(1.0f, 0.0f, 0.0f));
+    talus_vec3 n = tl_length2(x) > 1e-10f * aa * bb ? tl_normalize_or(x, axis) : tl_perpendicular(axis);
+    return tl_dot(n, between) < 0.0f ? tl_neg(n) : n;
+}
+
+static float half_of(const talus_geometry *g) { return g->type == TALUS_SPHERE ? 0.0f : g->half_height; }
+static float radius_of(const talus_geometry *g) { return g->type == TALUS_SPHERE ? g->radius : g->radius_top; }
+
 void tl_collide_capsules(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin,
                          tl_manifold *out) {
-    float ra = a->geometry.radius_top, rb = b->geometry.radius_top;
-    talus_vec3 ca = tl_v(0.0f, 0.0f, 0.0f), ua = tl_v(0.0f, a->geometry.half_height, 0.0f), cb = b_in_a->position;
-    talus_vec3 ub = tl_rotate(b_in_a->rotation, tl_v(0.0f, b->geometry.half_height, 0.0f)), pa, pb;
-    tl_touch touch;
-    tl_segment_segment(ca, ua, cb, ub, &pa, &pb);
-    talus_vec3 d = tl_sub(pb, pa), x = tl_cross(ua, ub);
-    float distance = tl_length(d), sum = ra + rb, aa = tl_length2(ua), bb = tl_length2(ub);
+    float ha = half_of(&a->geometry), hb = half_of(&b->geometry);
+    talus_vec3 t = b_in_a->position, ua = tl_v(0.0f, ha, 0.0f);
+    talus_vec3 ub = tl_rotate(b_in_a->rotation, tl_v(0.0f, hb, 0.0f));
+    cp_capsules x = {ha,    hb, radius_of(&a->geometry), radius_of(&b->geometry), {t.x, t.y, t.z}, {ub.x, ub.y, ub.z},
+                     margin};
+    cp_touch m;
+    cp_collide(&x, &m);
     out->count = 0;
     out->normal = tl_v(0.0f, 1.0f, 0.0f);
-    out->gap = distance - sum;
-    if (out->gap > margin) {
+    out->gap = m.gap;
+    if (m.gap > margin) {
         return;
     }
-    if (distance > 1e-6f * (a->geometry.half_height + b->geometry.half_height + sum)) {
-        touch.normal = tl_normalize_or(d, out->normal);
-    } else {
-        /* the axes cross, or run into one another */
-        talus_vec3 axis = tl_normalize_or(aa >= bb ? ua : ub, tl_v(1.0f, 0.0f, 0.0f));
-        touch.normal = tl_length2(x) > 1e-10f * aa * bb ? tl_normalize_or(x, axis) : tl_perpendicular(axis);
-        touch.normal = tl_dot(touch.normal, cb) < 0.0f ? tl_neg(touch.normal) : touch.normal;
-    }
-    touch.separation = distance - sum;
-    talus_vec3 n = touch.normal;
-    float na = tl_dot(n, ua);
-    if (aa > 0.0f && bb > 0.0f && tl_length2(x) <= PARALLEL_SIN2 * aa * bb && na * na <= 0.03f * aa) {
+    tl_touch touch;
+    touch.separation = m.gap;
+    touch.normal = m.meet ? normal_across(ua, ub, t) : tl_v(m.n[0], m.n[1], m.n[2]);
+    m.n[0] = touch.normal.x, m.n[1] = touch.normal.y, m.n[2] = touch.normal.z;
+    out->normal = touch.normal;
+    if (!m.decided && cp_is_beside(&x, m.cross2, m.n[1])) {
         tl_feature fa, fb;
-        set_ends(&fa, ca, ua, ra, n);
-        set_ends(&fb, cb, ub, -rb, n);
+        set_ends(&fa, tl_v(0.0f, 0.0f, 0.0f), ua, x.ra, touch.normal);
+        set_ends(&fb, t, ub, -x.rb, touch.normal);
         tl_manifold_build(&fa, &fb, &touch, margin, 0.0f, out);
         if (out->count > 0) {
             return;
         }
     }
-    out->normal = n;
-    out->count = 1;
-    out->point[0].separation = touch.separation;
-    out->point[0].position = tl_scale(tl_add(tl_mad(pa, ra, n), tl_mad(pb, -rb, n)), 0.5f);
-    out->point[0].id = 0;
+    set_point(&x, &m, out);
 }

@@ -19,8 +19,13 @@ static void collide_far(talus_vec3 t, float margin, tl_manifold *out) {
     }
 }
 
-static int even_capsule(const tl_convex *s) {
-    return s->geometry.type == TALUS_CAPSULE && s->geometry.radius_top == s->geometry.radius_bottom;
+static int is_even_capsule(const talus_geometry *g) {
+    return g->type == TALUS_CAPSULE && g->radius_top == g->radius_bottom;
+}
+
+int tl_are_capsules(const talus_geometry *a, const talus_geometry *b) {
+    int capsule_a = is_even_capsule(a), capsule_b = is_even_capsule(b);
+    return (capsule_a && (capsule_b || b->type == TALUS_SPHERE)) || (capsule_b && a->type == TALUS_SPHERE);
 }
 
 static void collide_ordered(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin,
@@ -28,10 +33,6 @@ static void collide_ordered(const tl_convex *a, const tl_convex *b, const talus_
     tl_core ca, cb;
     if (b->geometry.type == TALUS_SPHERE) {
         tl_collide_ball(a, b, b_in_a, margin, cache, out);
-        return;
-    }
-    if (even_capsule(a) && even_capsule(b)) {
-        tl_collide_capsules(a, b, b_in_a, margin, out);
         return;
     }
     tl_core_init(&ca, a, NULL);
@@ -56,6 +57,10 @@ void tl_collide(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a
     memset(out, 0, sizeof *out);
     if (tl_is_far(b_in_a->position)) {
         collide_far(b_in_a->position, margin, out);
+        return;
+    }
+    if (tl_are_capsules(&a->geometry, &b->geometry)) {
+        tl_collide_capsules(a, b, b_in_a, margin, out);
         return;
     }
     if (a->geometry.type >= b->geometry.type) {

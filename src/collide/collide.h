@@ -37,6 +37,9 @@ typedef struct tl_pair_cache {
 void tl_collide(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin, tl_pair_cache *cache,
                 tl_manifold *out);
 
+/* Whether both are capsules of one radius each, or one is and the other a ball. */
+int tl_are_capsules(const talus_geometry *a, const talus_geometry *b);
+
 /* Distance (m, 0 in overlap) with the closest points on both in a's frame. */
 float tl_distance(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, tl_pair_cache *cache,
                   talus_vec3 *point_a, talus_vec3 *point_b);

@@ -9,14 +9,11 @@
  * bound. */
 int tl_point_distance(const tl_convex *shape, talus_vec3 p, float *distance, talus_vec3 *normal);
 
-/* Two segments through `c` with half axes `u`: the points of both that are next to one another. */
-void tl_segment_segment(talus_vec3 ca, talus_vec3 ua, talus_vec3 cb, talus_vec3 ub, talus_vec3 *pa, talus_vec3 *pb);
-
 /* Any shape and a ball. */
 void tl_collide_ball(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin,
                      tl_pair_cache *cache, tl_manifold *out);
 
-/* Two capsules, each of one radius. */
+/* Two capsules, each of one radius; one of them may be a ball. */
 void tl_collide_capsules(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin,
                          tl_manifold *out);
 

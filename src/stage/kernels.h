@@ -29,6 +29,8 @@ typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);
 typedef struct tl_kernels {
     void (*place_pairs)(const tl_step *step, tl_pair_batch *batch); /* a, b, b_in_a and margin */
     void (*collide_balls)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
+    void (*collide_capsules)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
+    void (*collide_boxes)(const tl_step *step, const tl_pair_batch *batch, tl_box_manifolds *out);
     tl_kernel velocity, position, push; /* ranges of eight body rows */
     tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, strike_contacts,
         store_contacts;                                                                         /* groups */

@@ -7,6 +7,7 @@
 
 #include "stage/motion/motion.inl"
 #include "stage/narrow/batch.inl"
+#include "stage/narrow/box_batch.inl"
 #include "stage/row/contact_rows.inl"
 #include "stage/row/joint_rows.inl"
 #include "stage/solve/contacts.inl"
@@ -15,9 +16,8 @@
 #include "stage/solve/linked_joints.inl"
 
 const tl_kernels TL_KERNELS = {
-    place_pairs,      collide_balls,  velocity,       position,        push,
-    prepare_contacts, warm_contacts,  solve_contacts, relax_contacts,  push_contacts,
-    strike_contacts,  store_contacts, begin_joints,   turn_joints,     solve_joints,
-    relax_joints,     push_joints,    store_joints,   read_velocities, read_errors,
-    apply_impulses,   apply_pushes,   solve_linkages,
+    place_pairs,      collide_balls,  collide_capsules, collide_boxes,  velocity,      position,        push,
+    prepare_contacts, warm_contacts,  solve_contacts,   relax_contacts, push_contacts, strike_contacts, store_contacts,
+    begin_joints,     turn_joints,    solve_joints,     relax_joints,   push_joints,   store_joints,    read_velocities,
+    read_errors,      apply_impulses, apply_pushes,     solve_linkages,
 };

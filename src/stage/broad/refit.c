@@ -256,7 +256,7 @@ int tl_may_collide(const tl_header *h, uint32_t a, uint32_t b) {
 /* Whether the pair is there, or need not be. */
 static int pair(tl_header *h, uint32_t s, uint32_t t) {
     uint32_t a = s < t ? s : t, b = s < t ? t : s;
-    if (!tl_may_collide(h, a, b) || tl_pair_find(h, a, b) != TL_NONE) {
+    if (tl_pair_find(h, a, b) != TL_NONE || !tl_may_collide(h, a, b)) {
         return 1;
     }
     if (tl_pair_make(h, a, b) == TL_NONE) {
@@ -266,18 +266,34 @@ static int pair(tl_header *h, uint32_t s, uint32_t t) {
     return 1;
 }
 
+#define OTHERS 16u /* whose pairs are fetched while the tree is walked on */
+
+static int pair_others(tl_header *h, uint32_t shape, const uint32_t *others, uint32_t count) {
+    int all = 1;
+    for (uint32_t i = 0; i < count; i++) {
+        all &= pair(h, shape, others[i]);
+    }
+    return all;
+}
+
 /* Makes the pairs of a shape; 0 if there was not room for all. */
 static int pair_shape(tl_header *h, uint32_t shape) {
     const tl_shape_track *t = &tl_shape_tracks(h)[shape];
+    uint32_t others[OTHERS], count = 0;
     int all = 1;
     tl_tree_walk walk;
     for (int tree = 0; tree < (t->still ? 1 : 2); tree++) {
         tl_tree_begin(&walk, h, tree, &t->fat);
         for (uint32_t other = tl_tree_next(&walk, h); other != TL_NONE; other = tl_tree_next(&walk, h)) {
-            all &= pair(h, shape, other);
+            tl_pair_prefetch(h, shape < other ? shape : other, shape < other ? other : shape);
+            others[count++] = other;
+            if (count == OTHERS) {
+                all &= pair_others(h, shape, others, count);
+                count = 0;
+            }
         }
     }
-    return all;
+    return all & pair_others(h, shape, others, count);
 }
 
 void tl_stage_pairs(tl_header *h) {

@@ -1,6 +1,10 @@
-/* Eight pairs at a time: where their shapes stand, and the manifolds of balls with balls and with boxes. The order of
- * operations is that of the queries of a single pair (collide/ball.c, base/vec.h), so that the bits are the same. */
+/* Eight pairs at a time: where their shapes stand, and the manifolds of one point, of balls, capsules and boxes. The
+ * order of operations is that of the queries of a single pair (collide/ball.c, base/vec.h), so that the bits are the
+ * same. */
+#include "collide/general.h"
 #include "stage/narrow/batch.h"
+
+#include "collide/capsules.inl"
 
 typedef struct pose8 {
     v8 p;
@@ -90,24 +94,47 @@ static void place_pairs(const tl_step *step, tl_pair_batch *batch) {
     tl_f8_storeu(batch->margin, s.margin);
 }
 
-/* Points of one manifold each, from shape a's frame into those of the bodies. */
+static pose8 pose8_select(tl_m8 m, const pose8 *a, const pose8 *b) {
+    pose8 r = {v8_select(m, a->p, b->p), q8_of(tl_f8_select(m, a->q.x, b->q.x), tl_f8_select(m, a->q.y, b->q.y),
+                                               tl_f8_select(m, a->q.z, b->q.z), tl_f8_select(m, a->q.w, b->q.w))};
+    return r;
+}
+
+/* From the shapes' frames to those in which contacts keep their points. */
+typedef struct kept8 {
+    pose8 a, b;
+} kept8;
+
+static kept8 kept8_of(const tl_pair_batch *batch, const placed8 *s) {
+    kept8 k = {pose8_select(tl_m8_from_bits(batch->fixed_a), &s->a, &s->place_a),
+               pose8_select(tl_m8_from_bits(batch->fixed_b), &s->b, &s->place_b)};
+    return k;
+}
+
+/* A point of each manifold, from shape a's frame into those of the bodies: a record with its impulse and number. */
+static void point_rows(const kept8 *k, const placed8 *s, v8 n, v8 at, tl_f8 separation, tl_f8 row[8]) {
+    v8 half = v8_scale(n, tl_f8_mul(tl_f8_set1(0.5f), separation));
+    v8 on_a = pose8_point(&k->a, v8_sub(at, half));
+    v8 on_b = pose8_point(&k->b, pose8_point_back(&s->b_in_a, v8_add(at, half)));
+    row[0] = on_a.x, row[1] = on_a.y, row[2] = on_a.z;
+    row[3] = on_b.x, row[4] = on_b.y, row[5] = on_b.z;
+}
+
+static void normal_rows(const kept8 *k, v8 n, tl_row8 *to) {
+    v8 m = q8_rotate(k->a.q, n);
+    tl_f8 r[8] = {m.x, m.y, m.z, tl_f8_zero(), tl_f8_zero(), tl_f8_zero(), tl_f8_zero(), tl_f8_zero()};
+    rows_store(to, r);
+}
+
+/* Manifolds of one point each. */
 static void store_points(const tl_pair_batch *batch, const placed8 *s, v8 n, v8 at, tl_f8 separation,
                          tl_one_points *out) {
-    tl_m8 fixed_a = tl_m8_from_bits(batch->fixed_a), fixed_b = tl_m8_from_bits(batch->fixed_b);
-    pose8 a = {v8_select(fixed_a, s->a.p, s->place_a.p),
-               q8_of(tl_f8_select(fixed_a, s->a.q.x, s->place_a.q.x), tl_f8_select(fixed_a, s->a.q.y, s->place_a.q.y),
-                     tl_f8_select(fixed_a, s->a.q.z, s->place_a.q.z), tl_f8_select(fixed_a, s->a.q.w, s->place_a.q.w))};
-    pose8 b = {v8_select(fixed_b, s->b.p, s->place_b.p),
-               q8_of(tl_f8_select(fixed_b, s->b.q.x, s->place_b.q.x), tl_f8_select(fixed_b, s->b.q.y, s->place_b.q.y),
-                     tl_f8_select(fixed_b, s->b.q.z, s->place_b.q.z), tl_f8_select(fixed_b, s->b.q.w, s->place_b.q.w))};
-    v8 half = v8_scale(n, tl_f8_mul(tl_f8_set1(0.5f), separation));
-    v8 on_a = pose8_point(&a, v8_sub(at, half));
-    v8 on_b = pose8_point(&b, pose8_point_back(&s->b_in_a, v8_add(at, half)));
-    v8 m = q8_rotate(a.q, n);
-    tl_f8 p[8] = {on_a.x, on_a.y, on_a.z, on_b.x, on_b.y, on_b.z, tl_f8_zero(), tl_f8_zero()};
-    tl_f8 r[8] = {m.x, m.y, m.z, tl_f8_zero(), tl_f8_zero(), tl_f8_zero(), tl_f8_zero(), tl_f8_zero()};
+    kept8 k = kept8_of(batch, s);
+    tl_f8 p[8];
+    point_rows(&k, s, n, at, separation, p);
+    p[6] = p[7] = tl_f8_zero();
     rows_store(out->point, p);
-    rows_store(out->normal, r);
+    normal_rows(&k, n, out->normal);
     tl_f8_storeu(out->gap, separation);
     tl_f8_storeu(out->margin, s->margin);
 }
@@ -156,5 +183,32 @@ static void collide_balls(const tl_step *step, const tl_pair_batch *batch, tl_on
         radius = b[1];
         at = v8_mad(s.b_in_a.p, tl_f8_mul(half, tl_f8_add(distance, radius)), n);
     }
+    out->decided = 0xffu;
     store_points(batch, &s, n, at, tl_f8_sub(distance, radius), out);
+}
+
+/* Half of the axis, 0 of a ball, and the radius. */
+static void capsules_load(const tl_step *step, const uint32_t *shape, tl_f8 *half, tl_f8 *radius) {
+    const float *geometry = (const float *)(const void *)tl_shape_geometry(step->h);
+    tl_f8 g[8];
+    tl_f8_load_rows_stride(geometry, sizeof(talus_geometry) / sizeof(float), shape, g);
+    tl_m8 ball = tl_i8_eq(tl_i8_bits_of_f8(g[0]), tl_i8_set1(TALUS_SPHERE));
+    *half = tl_f8_select(ball, tl_f8_zero(), g[2]);
+    *radius = tl_f8_select(ball, g[1], g[3]);
+}
+
+static void collide_capsules(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out) {
+    placed8 s = place8(step, batch);
+    cp_capsules x;
+    cp_touch m;
+    capsules_load(step, batch->shape_a, &x.ha, &x.ra);
+    capsules_load(step, batch->shape_b, &x.hb, &x.rb);
+    v8 t = s.b_in_a.p, ub = q8_rotate(s.b_in_a.q, v8_of(tl_f8_zero(), x.hb, tl_f8_zero()));
+    x.t[0] = t.x, x.t[1] = t.y, x.t[2] = t.z;
+    x.ub[0] = ub.x, x.ub[1] = ub.y, x.ub[2] = ub.z;
+    x.margin = s.margin;
+    cp_collide(&x, &m);
+    v8 at = v8_of(cp_midway(&x, &m, 0), cp_midway(&x, &m, 1), cp_midway(&x, &m, 2));
+    out->decided = tl_m8_bits(m.decided);
+    store_points(batch, &s, v8_of(m.n[0], m.n[1], m.n[2]), at, m.gap, out);
 }

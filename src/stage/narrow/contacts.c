@@ -1,6 +1,7 @@
 /* Contacts: their manifolds are made anew where they moved more than the slack. */
 #include <string.h>
 
+#include "base/prefetch.h"
 #include "base/sort.h"
 #include "stage/broad/refit.h"
 #include "stage/narrow/batch.h"
@@ -121,46 +122,44 @@ static void note_ended(ended *e, uint32_t c, float gap) {
     e->keys[e->count++] = (uint64_t)c << 32 | bits;
 }
 
-static tl_batch_kind kind_of(const tl_header *h, const tl_contact_meta *m) {
-    talus_shape_type a = tl_shape_geometry(h)[m->shape_a].type, b = tl_shape_geometry(h)[m->shape_b].type;
-    if (a == TALUS_SPHERE && (b == TALUS_SPHERE || b == TALUS_BOX)) {
-        return b == TALUS_SPHERE ? TL_BATCH_BALLS : TL_BATCH_BALL_BOX;
-    }
-    return a == TALUS_BOX && b == TALUS_SPHERE ? TL_BATCH_BOX_BALL : TL_BATCH_OTHER;
-}
-
-static void add_to_batch(const tl_header *h, tl_pair_batch *batch, uint32_t c) {
-    const tl_contact_meta *m = &tl_contacts(h)[c];
-    uint32_t k = batch->count++;
-    batch->contact[k] = c;
-    batch->body_a[k] = m->body_a, batch->body_b[k] = m->body_b;
-    batch->shape_a[k] = m->shape_a, batch->shape_b[k] = m->shape_b;
-    batch->senses |= (uint32_t)((m->flags & TL_CONTACT_SENSOR) != 0) << k;
-    batch->fixed_a |= (uint32_t)tl_body_is_fixed(h, m->body_a) << k;
-    batch->fixed_b |= (uint32_t)tl_body_is_fixed(h, m->body_b) << k;
-}
-
 static void store_one_points(tl_step *step, const tl_pair_batch *batch, const tl_one_points *out, ended *e) {
     tl_header *h = step->h;
     for (uint32_t k = 0; k < batch->count; k++) {
-        uint32_t c = batch->contact[k];
+        uint32_t c = batch->item[k];
+        if (!(out->decided >> k & 1u)) {
+            continue;
+        }
         if (!(out->gap[k] <= out->margin[k])) {
             h->counters.manifolds_made++;
             note_ended(e, c, out->gap[k]);
             continue;
         }
-        tl_contact_point_record *r = &tl_points(h)[c].p[0];
-        float impulse = r->impulse; /* a ball's only point is the one it had */
-        memcpy(r->a, out->point[k].f, 6u * sizeof(float));
-        r->impulse = impulse;
+        tl_contact_points *points = &tl_points(h)[c];
+        /* an only point has the number 0 and keeps its impulse */
+        if (tl_contacts(h)[c].count != 1 || points->p[0].id != 0) {
+            memset(points, 0, sizeof *points);
+        }
+        memcpy(points->p[0].a, out->point[k].f, 6u * sizeof(float));
         memcpy(tl_heads(h)[c].normal, out->normal[k].f, 3u * sizeof(float));
+        tl_contacts(h)[c].count = 1;
         kept_until_moved(h, &tl_contacts(h)[c]);
     }
 }
 
-static void make_one_by_one(tl_step *step, const tl_pair_batch *batch, ended *e) {
+/* They are needed when the batch is full. */
+static void prefetch_points(const tl_header *h, uint32_t c) {
+    tl_prefetch(&tl_points(h)[c].p[0]);
+    tl_prefetch(&tl_points(h)[c].p[2]);
+    tl_prefetch(&tl_heads(h)[c]);
+}
+
+/* Those lanes of a batch, whose shapes are placed, that are not done. */
+static void make_one_by_one(tl_step *step, const tl_pair_batch *batch, uint32_t done, ended *e) {
     tl_header *h = step->h;
     for (uint32_t k = 0; k < batch->count; k++) {
+        if (done >> k & 1u) {
+            continue;
+        }
         tl_query q;
         q.shape_a = batch->shape_a[k], q.shape_b = batch->shape_b[k];
         q.body_a = batch->body_a[k], q.body_b = batch->body_b[k];
@@ -169,9 +168,30 @@ static void make_one_by_one(tl_step *step, const tl_pair_batch *batch, ended *e)
         q.b_in_a = tl_row_pose_of(&batch->b_in_a[k]);
         q.margin = batch->margin[k];
         float gap;
-        if (!make_manifold(step, batch->contact[k], &q, &gap)) {
-            note_ended(e, batch->contact[k], gap);
+        if (!make_manifold(step, batch->item[k], &q, &gap)) {
+            note_ended(e, batch->item[k], gap);
         }
+    }
+}
+
+static void store_boxes(tl_step *step, const tl_pair_batch *batch, const tl_box_manifolds *out, ended *e) {
+    tl_header *h = step->h;
+    for (uint32_t k = 0; k < batch->count; k++) {
+        uint32_t c = batch->item[k], count = (uint32_t)out->count[k];
+        if (!(out->decided >> k & 1u)) {
+            continue;
+        }
+        if (count == 0) {
+            h->counters.manifolds_made++;
+            note_ended(e, c, out->gap[k]);
+            continue;
+        }
+        for (uint32_t i = 0; i < TL_MANIFOLD_POINTS; i++) {
+            memcpy(&tl_points(h)[c].p[i], &out->point[i][k], sizeof out->point[i][k]);
+        }
+        memcpy(tl_heads(h)[c].normal, out->normal[k].f, 3u * sizeof(float));
+        tl_contacts(h)[c].count = count;
+        kept_until_moved(h, &tl_contacts(h)[c]);
     }
 }
 
@@ -180,20 +200,24 @@ static void run_batch(tl_step *step, tl_pair_batch *batch, ended *e) {
     if (batch->count == 0) {
         return;
     }
-    for (uint32_t k = batch->count; k < TL_LANES; k++) {
-        batch->body_a[k] = batch->body_a[0], batch->body_b[k] = batch->body_b[0];
-        batch->shape_a[k] = batch->shape_a[0], batch->shape_b[k] = batch->shape_b[0];
-    }
-    if (batch->kind == TL_BATCH_OTHER) {
-        kernels->place_pairs(step, batch);
-        make_one_by_one(step, batch, e);
-    } else {
+    tl_batch_fill(batch);
+    uint32_t decided = 0;
+    if (batch->kind == TL_BATCH_BOXES) {
+        tl_box_manifolds out;
+        kernels->collide_boxes(step, batch, &out);
+        store_boxes(step, batch, &out, e);
+        decided = out.decided;
+    } else if (batch->kind != TL_BATCH_OTHER) {
         tl_one_points out;
-        kernels->collide_balls(step, batch, &out);
+        (batch->kind == TL_BATCH_CAPSULES ? kernels->collide_capsules : kernels->collide_balls)(step, batch, &out);
         store_one_points(step, batch, &out, e);
+        decided = out.decided;
     }
-    batch->count = 0;
-    batch->senses = batch->fixed_a = batch->fixed_b = 0;
+    if (~decided & ((1u << batch->count) - 1u)) {
+        kernels->place_pairs(step, batch);
+        make_one_by_one(step, batch, decided, e);
+    }
+    tl_batch_clear(batch);
 }
 
 /* Micrometres that a contact may move before its manifold is made anew: between half of the slack and the whole, by a
@@ -206,15 +230,14 @@ static uint32_t slack_of(uint32_t contact, const tl_contact_meta *meta, uint32_t
 static void update_contact(tl_step *step, tl_pair_batch *batches, uint32_t c, ended *e) {
     tl_header *h = step->h;
     const tl_contact_meta *meta = &tl_contacts(h)[c];
+    tl_pair_batch *batch = &batches[tl_batch_kind_of(h, meta->shape_a, meta->shape_b)];
     float gap;
-    if (tl_parted_by_balls(step, meta->body_a, meta->body_b, &gap)) {
-        note_ended(e, c, gap);
-        return;
-    }
-    tl_pair_batch *batch = &batches[kind_of(h, meta)];
-    add_to_batch(h, batch, c);
-    if (batch->count == TL_LANES) {
+    if (batch->kind == TL_BATCH_OTHER && tl_parted_by_balls(step, meta->body_a, meta->body_b, &gap)) {
+        note_ended(e, c, gap); /* in lanes the query itself costs no more */
+    } else if (tl_batch_add(h, batch, c, meta->shape_a, meta->shape_b)) {
         run_batch(step, batch, e);
+    } else {
+        prefetch_points(h, c);
     }
 }
 
@@ -224,10 +247,7 @@ void tl_contacts_update(tl_step *step) {
     uint32_t slack = (uint32_t)(h->settings.recycle_slack * 1e6f);
     tl_pair_batch batches[TL_BATCH_KINDS];
     ended e = {tl_new_touch(h), 0};
-    for (uint32_t i = 0; i < TL_BATCH_KINDS; i++) {
-        batches[i].kind = (tl_batch_kind)i;
-        batches[i].count = batches[i].senses = batches[i].fixed_a = batches[i].fixed_b = 0;
-    }
+    tl_batches_begin(batches, 1);
     tl_lists_of_awake(h);
     for (uint32_t k = 0; k < h->awake_contacts; k++) {
         uint32_t c = tl_awake_contact(h)[k];

@@ -8,23 +8,28 @@
 
 #include "base/prefetch.h"
 #include "base/sort.h"
+#include "collide/cache.h"
 #include "stage/broad/refit.h"
 #include "stage/narrow/query.h"
 #include "stage/store/lists.h"
 
+/* Whether shapes whose manifold has points may touch within the step as well. */
+static int may_touch(tl_step *step, uint32_t shape_a, uint32_t shape_b) {
+    tl_header *h = step->h;
+    talus_aabb a = tl_shape_swept_box(h, step->geometry, shape_a, step->dt);
+    talus_aabb b = tl_shape_swept_box(h, step->geometry, shape_b, step->dt);
+    return tl_aabb_overlap(&a, &b) && tl_may_collide(h, shape_a, shape_b); /* a restored joint may forbid it now */
+}
+
 /* Whether the shapes touch now or may within the step; else `gap` (m) and `hint` tell how they are apart. */
 static int touches(tl_step *step, uint32_t shape_a, uint32_t shape_b, tl_pair_cache *hint, float *gap) {
     tl_header *h = step->h;
-    uint32_t body_a = tl_shapes(h)[shape_a].body, body_b = tl_shapes(h)[shape_b].body;
-    if (tl_parted_by_balls(step, body_a, body_b, gap)) {
-        return 0;
-    }
     tl_query q = tl_query_of(step, shape_a, shape_b);
     tl_pair_cache cold = {{0, 0, 0, 0}};
     tl_manifold m;
     h->counters.manifolds_made++;
     if (memcmp(hint, &cold, sizeof cold) != 0) {
-        tl_collide(&q.a, &q.b, &q.b_in_a, q.margin + tl_doubt_of(h, body_a, body_b, q.margin), hint, &m);
+        tl_collide(&q.a, &q.b, &q.b_in_a, q.margin + tl_doubt_of(h, q.body_a, q.body_b, q.margin), hint, &m);
         *gap = m.gap;
         if (m.count == 0) {
             return 0;
@@ -34,14 +39,8 @@ static int touches(tl_step *step, uint32_t shape_a, uint32_t shape_b, tl_pair_ca
     }
     tl_collide(&q.a, &q.b, &q.b_in_a, q.margin, &cold, &m);
     *hint = cold;
-    *gap = m.gap;
-    if (m.count == 0) {
-        return 0;
-    }
-    talus_aabb a = tl_shape_swept_box(h, step->geometry, shape_a, step->dt);
-    talus_aabb b = tl_shape_swept_box(h, step->geometry, shape_b, step->dt);
-    *gap = 0.0f;
-    return tl_aabb_overlap(&a, &b) && tl_may_collide(h, shape_a, shape_b); /* a restored joint may forbid it now */
+    *gap = m.count ? 0.0f : m.gap;
+    return m.count > 0 && may_touch(step, shape_a, shape_b);
 }
 
 /* Micrometres that each awake body may go in the step. */
@@ -68,14 +67,74 @@ static int fat_boxes_part(const tl_header *h, const tl_pair *p) {
     return !tl_aabb_overlap(&tl_shape_tracks(h)[p->shape_a].fat, &tl_shape_tracks(h)[p->shape_b].fat);
 }
 
+/* A pair that was looked at is looked at again when it moved more than it is clear. */
+static void note_looked(tl_step *step, new_touches *found, uint32_t pair, int touch, float gap) {
+    tl_header *h = step->h;
+    const uint32_t *motion = tl_body_motion(h);
+    tl_pair *p = &tl_pairs(h)[pair];
+    if (touch) {
+        offer(h, found, p->shape_a, p->shape_b);
+    }
+    p->motion = motion[p->body_a] + motion[p->body_b];
+    p->clear = tl_clear_of(h, p->body_a, p->body_b, gap);
+}
+
+static void look_at_pair(tl_step *step, new_touches *found, uint32_t pair) {
+    const tl_pair *p = &tl_pairs(step->h)[pair];
+    float gap;
+    int touch = touches(step, p->shape_a, p->shape_b, &tl_pair_hints(step->h)[pair], &gap);
+    note_looked(step, found, pair, touch, gap);
+}
+
+/* What a batch of pairs tells of lane k: whether it is decided there, and whether there are points, else the gap (m).
+ */
+static void note_lane(tl_step *step, new_touches *found, const tl_pair_batch *batch, uint32_t k, uint32_t decided,
+                      int points, float gap) {
+    tl_header *h = step->h;
+    tl_pair_cache *hint = &tl_pair_hints(h)[batch->item[k]];
+    if (!decided) {
+        look_at_pair(step, found, batch->item[k]);
+        return;
+    }
+    int touch = points && may_touch(step, batch->shape_a[k], batch->shape_b[k]);
+    h->counters.manifolds_made++;
+    h->counters.manifolds_first += hint->word[0] == 0u;
+    hint->word[0] = hint->word[0] ? hint->word[0] : TL_CACHE_LOOKED;
+    note_looked(step, found, batch->item[k], touch, points ? 0.0f : gap);
+}
+
+static void look_at_batch(tl_step *step, new_touches *found, tl_pair_batch *batch) {
+    const tl_kernels *kernels = tl_kernels_of((talus_isa)step->h->isa);
+    if (batch->count == 0) {
+        return;
+    }
+    tl_batch_fill(batch);
+    if (batch->kind == TL_BATCH_BOXES) {
+        tl_box_manifolds out;
+        kernels->collide_boxes(step, batch, &out);
+        for (uint32_t k = 0; k < batch->count; k++) {
+            note_lane(step, found, batch, k, out.decided >> k & 1u, out.count[k] > 0.0f, out.gap[k]);
+        }
+    } else {
+        tl_one_points out;
+        (batch->kind == TL_BATCH_CAPSULES ? kernels->collide_capsules : kernels->collide_balls)(step, batch, &out);
+        for (uint32_t k = 0; k < batch->count; k++) {
+            note_lane(step, found, batch, k, out.decided >> k & 1u, out.gap[k] <= out.margin[k], out.gap[k]);
+        }
+    }
+    tl_batch_clear(batch);
+}
+
 #define PAIRS_AHEAD 12u
 
 static void look_at_pairs(tl_step *step, new_touches *found) {
     tl_header *h = step->h;
     const uint32_t *motion = tl_body_motion(h), *way = tl_body_way(h), doubted = h->pairs_doubted;
+    tl_pair_batch batches[TL_BATCH_KINDS];
+    tl_batches_begin(batches, 0);
     for (uint32_t k = 0; k < h->awake_pairs;) {
         uint32_t i = tl_awake_pair(h)[k];
-        tl_pair *p = &tl_pairs(h)[i];
+        const tl_pair *p = &tl_pairs(h)[i];
         if (k + PAIRS_AHEAD < h->awake_pairs) { /* they lie in no order, and waiting for them is most of the work */
             tl_prefetch(&tl_pairs(h)[tl_awake_pair(h)[k + PAIRS_AHEAD]]);
         }
@@ -92,11 +151,17 @@ static void look_at_pairs(tl_step *step, new_touches *found) {
             continue;
         }
         float gap;
-        if (touches(step, p->shape_a, p->shape_b, &tl_pair_hints(h)[i], &gap)) {
-            offer(h, found, p->shape_a, p->shape_b);
+        tl_batch_kind kind = tl_batch_kind_of(h, p->shape_a, p->shape_b);
+        if (tl_parted_by_balls(step, p->body_a, p->body_b, &gap)) {
+            note_looked(step, found, i, 0, gap);
+        } else if (kind == TL_BATCH_OTHER) {
+            look_at_pair(step, found, i);
+        } else if (tl_batch_add(h, &batches[kind], i, p->shape_a, p->shape_b)) {
+            look_at_batch(step, found, &batches[kind]);
         }
-        p->motion = now;
-        p->clear = tl_clear_of(h, p->body_a, p->body_b, gap);
+    }
+    for (uint32_t kind = 0; kind < TL_BATCH_OTHER; kind++) {
+        look_at_batch(step, found, &batches[kind]);
     }
     h->pairs_doubted = 0;
 }
@@ -117,6 +182,7 @@ static void look_around(tl_step *step, uint32_t shape, new_touches *found) {
             tl_pair_cache hint = {{0, 0, 0, 0}};
             float gap;
             if (awake && !seen && tl_may_collide(h, a, b) && tl_pair_find(h, a, b) == TL_NONE &&
+                !tl_parted_by_balls(step, tl_shapes(h)[a].body, tl_shapes(h)[b].body, &gap) &&
                 touches(step, a, b, &hint, &gap)) {
                 offer(h, found, a, b);
             }

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/prefetch.h"
+
 /* --- the table -------------------------------------------------------------------------------- */
 
 static uint32_t hash_pair(uint32_t a, uint32_t b) {
@@ -25,6 +27,10 @@ uint32_t tl_pair_find(const tl_header *h, uint32_t shape_a, uint32_t shape_b) {
         }
     }
     return TL_NONE;
+}
+
+void tl_pair_prefetch(const tl_header *h, uint32_t shape_a, uint32_t shape_b) {
+    tl_prefetch(&tl_pair_slot(h)[hash_pair(shape_a, shape_b) & (h->capacity[TL_COUNT_SLOT] - 1u)]);
 }
 
 static void table_insert(tl_header *h, uint32_t pair) {

@@ -8,6 +8,8 @@
 
 /* The pair's index, or TL_NONE; a < b. Open addressing over pair_slot, which holds the index plus one. */
 uint32_t tl_pair_find(const tl_header *h, uint32_t shape_a, uint32_t shape_b);
+/* It will be asked for soon. */
+void tl_pair_prefetch(const tl_header *h, uint32_t shape_a, uint32_t shape_b);
 
 /* A pair that is apart and was not looked at; TL_NONE if there is no room. Pairs of contacts always have room. */
 uint32_t tl_pair_make(tl_header *h, uint32_t shape_a, uint32_t shape_b);
