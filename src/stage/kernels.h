@@ -29,7 +29,7 @@ typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);
 typedef struct tl_kernels {
     void (*place_pairs)(const tl_step *step, tl_pair_batch *batch); /* a, b, b_in_a and margin */
     void (*collide_balls)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
-    tl_kernel velocity, position, push; /* ranges of eight body rows */
+    tl_kernel velocity, position, fly, push; /* ranges of eight body rows */
     tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, strike_contacts,
         store_contacts;                                                                         /* groups */
     tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */

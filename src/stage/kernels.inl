@@ -15,9 +15,8 @@
 #include "stage/solve/linked_joints.inl"
 
 const tl_kernels TL_KERNELS = {
-    place_pairs,      collide_balls,  velocity,       position,        push,
-    prepare_contacts, warm_contacts,  solve_contacts, relax_contacts,  push_contacts,
-    strike_contacts,  store_contacts, begin_joints,   turn_joints,     solve_joints,
-    relax_joints,     push_joints,    store_joints,   read_velocities, read_errors,
-    apply_impulses,   apply_pushes,   solve_linkages,
+    place_pairs,      collide_balls,   velocity,       position,       fly,           push,
+    prepare_contacts, warm_contacts,   solve_contacts, relax_contacts, push_contacts, strike_contacts,
+    store_contacts,   begin_joints,    turn_joints,    solve_joints,   relax_joints,  push_joints,
+    store_joints,     read_velocities, read_errors,    apply_impulses, apply_pushes,  solve_linkages,
 };

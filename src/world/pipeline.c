@@ -167,8 +167,13 @@ static void solve(tl_step *step, tl_watch *w) {
     h->counters.groups_pushed = pushed;
     h->counters.groups_bouncing = bouncing;
     tl_watch_lap(w, TALUS_STAGE_ROWS);
-    for (uint32_t i = 0; i < h->settings.substeps; i++) {
-        run_substep(step, k, i == 0, w);
+    if (h->groups || h->joint_groups || step->any_locks) {
+        for (uint32_t i = 0; i < h->settings.substeps; i++) {
+            run_substep(step, k, i == 0, w);
+        }
+    } else {
+        k->fly(step, 0, step->rows);
+        tl_watch_lap(w, TALUS_STAGE_POSITION);
     }
     h->counters.restitution_skipped = !bouncing;
     h->counters.rolling_skipped = !rolling;

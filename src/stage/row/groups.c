@@ -12,18 +12,23 @@ static uint32_t contact_key(const tl_contact_meta *m) { return m->color * 4u + (
 
 /* Sorts the touching contacts by key into contact_order; counting sort. Returns their number. */
 static uint32_t order_contacts(tl_header *h) {
-    uint32_t start[KEYS + 1u], total = 0;
+    uint32_t start[KEYS + 1u], total = 0, most = 0;
     const tl_contact_meta *metas = tl_contacts(h);
     const uint32_t *awake = tl_awake_contact(h);
+    if (h->awake_contacts == 0) {
+        return 0;
+    }
     memset(start, 0, sizeof start);
     for (uint32_t k = 0; k < h->awake_contacts; k++) {
         const tl_contact_meta *m = &metas[awake[k]];
         if (m->flags & TL_CONTACT_COLORED) {
-            start[contact_key(m)]++;
+            uint32_t key = contact_key(m);
+            start[key]++;
+            most = key > most ? key : most;
             h->counters.contact_points += m->count;
         }
     }
-    for (uint32_t i = 0; i < KEYS; i++) {
+    for (uint32_t i = 0; i <= most; i++) {
         uint32_t n = start[i];
         start[i] = total;
         total += n;
@@ -190,6 +195,9 @@ static uint32_t order_joints(tl_header *h) {
     uint32_t start[TL_COLORS + 2u], total = 0;
     const uint32_t *awake = tl_awake_joint(h);
     uint32_t *order = tl_joint_order(h);
+    if (h->awake_joints == 0) {
+        return 0;
+    }
     memset(start, 0, sizeof start);
     for (uint32_t k = 0; k < h->awake_joints; k++) {
         start[tl_joints(h)[awake[k]].color]++;
