@@ -21,6 +21,14 @@ void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint);
 /* How many rows of a joint are solved with the linkage that it is in: equalities, then ranges. */
 uint32_t tl_linked_rows(const tl_joint_record *j);
 
+/* How much of linkage_nodes, linkage_blocks, linkage_values and linkage_places is taken. */
+typedef struct tl_linkage_room {
+    uint32_t nodes, blocks, values, places;
+} tl_linkage_room;
+
+/* Cuts a linkage of a shape, if it is one long path and there is room, and makes its groups. Returns whether it did. */
+int tl_linkage_cut(tl_step *step, tl_linkage *l, const tl_linkage_shape *s, tl_linkage_room *room);
+
 /* Finds the linkages among the awake joints, with the groups of those that are solved eight wide; linkage_of then has
  * for every awake joint its place, TL_LINKAGE_NONE or TL_LINKAGE_READY. O(awake joints + blocks). */
 void tl_linkages_find(tl_step *step);

@@ -213,6 +213,7 @@ static void find_components(const tl_step *step, finder *f) {
         } else if (count > 1u) {
             uint32_t shape = shape_of(f, f->joints, count, ends);
             tl_linkage *l = &tl_linkages(h)[f->linkages++];
+            memset(l, 0, sizeof *l);
             l->shape = shape, l->first_joint = f->joints, l->lanes = 1u;
             tl_linkage_shapes(h)[shape].members++;
             f->joints += count;
@@ -264,6 +265,13 @@ static uint32_t wide_members(uint32_t members) {
     return rest >= LEAST_WIDE ? members : members - rest;
 }
 
+static int cut(tl_step *step, finder *f, tl_linkage *l, const tl_linkage_shape *s) {
+    tl_linkage_room room = {f->nodes, f->blocks, f->values, f->places};
+    int done = tl_linkage_cut(step, l, s, &room);
+    f->nodes = room.nodes, f->blocks = room.blocks, f->values = room.values, f->places = room.places;
+    return done;
+}
+
 /* The linkages in their final places: what is alike goes side by side, the rest keeps its joints for the coloured
  * groups. */
 static void place_linkages(tl_step *step, finder *f) {
@@ -281,6 +289,10 @@ static void place_linkages(tl_step *step, finder *f) {
             s->wide--;
             linkages[s->open].lanes++;
             fill_groups(step, &linkages[s->open], s, l.first_joint);
+            continue;
+        }
+        if (s->wide == 0 && cut(step, f, &l, s)) {
+            linkages[kept++] = l;
             continue;
         }
         if (!settle(f, &l, s, s->wide > 0 ? TL_LANES : 1u) || (s->wide > 0 && !open_groups(f, &l, s))) {

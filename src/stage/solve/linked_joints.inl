@@ -1,6 +1,8 @@
 /* Linked joints, eight at a time: what their linkage has to meet, and what comes of it. */
 #include "stage/solve/linkages.inl"
 
+#include "stage/solve/cuts.inl"
+
 static inline tl_m8 is_hard(const tl_joint_row *row) {
     return tl_f8_eq(tl_f8_add(tl_f8_load(row->stiffness), tl_f8_load(row->damping)), tl_f8_zero());
 }
@@ -152,7 +154,9 @@ static void solve_linkages(const tl_step *step, uint32_t first, uint32_t last) {
         if (step->again && !l->far) {
             continue;
         }
-        if (l->wide) {
+        if (l->cuts) {
+            cut_solve(step->h, l);
+        } else if (l->wide) {
             link_solve(step->h, l);
         } else {
             tl_linkage_solve_one(step->h, l);

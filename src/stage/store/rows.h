@@ -123,6 +123,9 @@ typedef struct tl_linkage {
     uint32_t values;             /* in linkage_values */
     uint32_t lanes, wide;        /* sets in it; 1 if it is solved eight wide */
     uint32_t far;                /* 1 if it is to be pushed again */
+    /* Of one that is cut into pieces: joints of a piece, cuts (0: it is not cut), groups from, nodes of a piece and
+     * then of the cuts, values of the cuts behind those of the pieces */
+    uint32_t inner, cuts, first_group, cut, cut_values;
 } tl_linkage;
 
 #endif
