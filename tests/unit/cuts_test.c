@@ -20,7 +20,8 @@ static void open_chain(chain *c, int links, int hinge, int held, int turned) {
         talus_shape_def box = kit_box_def(0.1f, 0.05f, 0.05f);
         c->link[i] = kit_body(&c->world, TALUS_DYNAMIC, kit_vec(0.15f + 0.3f * (float)i, 0.0f, 0.0f));
         kit_shape(&c->world, c->link[i], &box);
-        OK(talus_body_set_velocity(&c->world, c->link[i], kit_vec(0.0f, 2.0f, 0.0f), kit_vec(0.0f, 0.0f, 0.0f)));
+        OK(talus_body_set_velocity(&c->world, c->link[i], kit_vec(0.0f, 2.0f, hinge ? 0.0f : 0.2f * (float)(i % 5)),
+                                   kit_vec(0.0f, 0.0f, 0.0f)));
         if (i > 0 || held) {
             talus_joint_def d = talus_joint_def_default();
             talus_joint joint;
@@ -60,15 +61,15 @@ static void compare(int links, int hinge, int held) {
         assert_int_equal(cuts_of(&cut), joints / ((joints + 7u) / 8u));
         assert_int_equal(cuts_of(&whole), 0);
         OK(talus_world_measure(&cut.world, &e));
-        assert_true(e.joint_linear < 1e-5f && e.joint_angular < 1e-4f);
+        assert_true(e.joint_linear < 1e-4f && e.joint_angular < 1e-3f);
     }
     for (int i = 0; i < links; i++) {
         talus_pose a, b;
         OK(talus_body_get_pose(&cut.world, cut.link[i], &a));
         OK(talus_body_get_pose(&whole.world, whole.link[i], &b));
-        NEAR(a.position.x, b.position.x, 2e-4f);
-        NEAR(a.position.y, b.position.y, 2e-4f);
-        NEAR(a.position.z, b.position.z, 2e-4f);
+        NEAR(a.position.x, b.position.x, 1e-3f);
+        NEAR(a.position.y, b.position.y, 1e-3f);
+        NEAR(a.position.z, b.position.z, 1e-3f);
     }
     kit_end(&cut.world);
     kit_end(&whole.world);

@@ -121,7 +121,7 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j) {
     for (uint32_t k = 0; k < TL_LANES; k++) {
         g->qa[3][k] = g->qb[3][k] = 1.0f;
     }
-    g->rows = j->rows, g->fixed = j->fixed;
+    g->rows = j->rows, g->fixed = j->fixed, g->exact = 1u;
     g->first_row = h->joint_rows;
     g->free_axis = j->free_axis == TL_NONE ? 0u : j->free_axis;
     memcpy(g->code, j->code, sizeof g->code);
@@ -246,7 +246,8 @@ void tl_stage_joint_groups(tl_step *step) {
         if (j->rows == 0 || place == TL_LINKAGE_READY) {
             continue;
         }
-        tl_joint_group *g = find_group(h, first, joint, place != TL_LINKAGE_NONE);
+        int linked = place != TL_LINKAGE_NONE && place != TL_LINKAGE_ALONE;
+        tl_joint_group *g = find_group(h, first, joint, linked);
         if (!g) {
             g = tl_joint_group_open(h, j);
         }
@@ -254,12 +255,14 @@ void tl_stage_joint_groups(tl_step *step) {
             dropped++;
             continue;
         }
-        if (place != TL_LINKAGE_NONE) {
+        g->exact &= place != TL_LINKAGE_NONE;
+        if (linked) {
             g->linked = tl_linked_rows(j);
             tl_linkage_places(h)[place] = (uint32_t)(g - tl_joint_group_pool(h)) * TL_LANES + g->lanes;
         }
         tl_joint_group_add(step, g, joint);
     }
+    tl_linkages_note_exact(h);
     h->counters.joints_solved = count - dropped;
     h->counters.joints_sleeping = h->joints.used - h->awake_joints;
     h->counters.rows.dropped += dropped;

@@ -16,6 +16,7 @@ void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint);
 /* What linkage_of says of a joint beside its place in a linkage. */
 #define TL_LINKAGE_NONE 0xffffffffu  /* it is in none */
 #define TL_LINKAGE_READY 0xfffffffeu /* its group is made */
+#define TL_LINKAGE_ALONE 0xfffffffcu /* it is in none, and exact */
 #define TL_LINKAGE_APART 0xfffffffdu /* while they are looked for: with others, none of which is to be linked */
 
 /* How many rows of a joint are solved with the linkage that it is in: equalities, then ranges. */
@@ -32,5 +33,8 @@ int tl_linkage_cut(tl_step *step, tl_linkage *l, const tl_linkage_shape *s, tl_l
 /* Finds the linkages among the awake joints, with the groups of those that are solved eight wide; linkage_of then has
  * for every awake joint its place, TL_LINKAGE_NONE or TL_LINKAGE_READY. O(awake joints + blocks). */
 void tl_linkages_find(tl_step *step);
+
+/* Notes in the groups, when all are made, which of the linkages are not exact. */
+void tl_linkages_note_exact(tl_header *h);
 
 #endif

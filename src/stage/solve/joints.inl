@@ -90,7 +90,13 @@ static inline void solve_factored(const tl_joint_group *g, tl_f8 x[6]) {
     }
 }
 
-static void solve_equalities(const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p, int before_move) {
+/* Whether a group is to be passed over, for one solve of its velocities in a sub-step is all it takes. */
+static inline int is_exact(const tl_step *step, const tl_joint_group *g) { return step->skip_exact && g->exact; }
+/* Whether what is found now stands in the impulses already, as that which the sub-step before left to this one. */
+static inline int counts_for_last(const tl_step *step, const tl_joint_group *g) { return step->deferred && g->exact; }
+
+static void solve_equalities(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
+                             int before_move) {
     tl_f8 x[6];
     for (uint32_t i = 0; i < g->fixed; i++) {
         tl_f8 speed = joint_speed(p, &rows[i], is_linear_row(g->code[i]));
@@ -98,7 +104,9 @@ static void solve_equalities(const tl_joint_group *g, tl_joint_row *rows, pair_v
     }
     solve_factored(g, x);
     for (uint32_t i = 0; i < g->fixed; i++) {
-        tl_f8_store(rows[i].impulse, tl_f8_add(tl_f8_load(rows[i].impulse), x[i]));
+        if (!counts_for_last(step, g)) {
+            tl_f8_store(rows[i].impulse, tl_f8_add(tl_f8_load(rows[i].impulse), x[i]));
+        }
         joint_apply(p, &rows[i], is_linear_row(g->code[i]), x[i]);
     }
 }
@@ -149,7 +157,7 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        if (g->linked && g->rows == g->fixed) {
+        if ((g->linked && g->rows == g->fixed) || is_exact(step, g)) {
             continue;
         }
         load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
@@ -162,7 +170,7 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
             }
         }
         if (!g->linked) {
-            solve_equalities(g, rows, &p, before_move);
+            solve_equalities(step, g, rows, &p, before_move);
         }
         store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }

@@ -36,7 +36,7 @@ static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) 
     for (uint32_t i = first; i < last; i++) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
-        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+        if (!g->linked || is_exact(step, g) || (step->again && !(g->far & TL_FAR_AGAIN))) {
             continue;
         }
         pair_velocity p;
@@ -106,7 +106,7 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
-        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+        if (!g->linked || is_exact(step, g) || (step->again && !(g->far & TL_FAR_AGAIN))) {
             continue;
         }
         pair_velocity p;
@@ -122,7 +122,9 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
                 now = tl_f8_select(wrong, tl_f8_zero(), now);
                 pulls = tl_m8_or(pulls, wrong);
             }
-            tl_f8_store(rows[k].impulse, now);
+            if (!counts_for_last(step, g)) {
+                tl_f8_store(rows[k].impulse, now);
+            }
             joint_apply(&p, &rows[k], linear, tl_f8_sub(now, old));
             pull = linear ? v8_mad(pull, now, v8_load(rows[k].n[0])) : pull;
         }
@@ -151,7 +153,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
 static void solve_linkages(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         const tl_linkage *l = &tl_linkages(step->h)[i];
-        if (step->again && !l->far) {
+        if ((step->again && !l->far) || (step->skip_exact && l->exact)) {
             continue;
         }
         if (l->cuts) {

@@ -92,7 +92,8 @@ typedef struct tl_joint_group {
     uint32_t stale;              /* bits of lanes: their linkage is to be factored anew */
     uint32_t stiff;              /* linked: one pulls so hard that its bodies are to be looked at */
     uint32_t far;                /* linked: TL_FAR_* */
-    uint32_t reserved[3];
+    uint32_t exact;              /* one solve of its velocities in a sub-step leaves nothing to solve */
+    uint32_t reserved[2];
     uint32_t code[TL_JOINT_ROWS];
     float pa[3][TL_LANES], qa[4][TL_LANES]; /* the joint's frame in a's mass frame */
     float pb[3][TL_LANES], qb[4][TL_LANES];
@@ -110,7 +111,7 @@ typedef struct tl_joint_group {
 typedef struct tl_linkage_shape {
     uint32_t first_node, nodes, ends;
     uint32_t first_joint; /* in linkage_order: the joints of the first of them, others as `next` has it */
-    uint32_t members, values;
+    uint32_t members, values, planned;
     uint32_t wide, open; /* members still to be put side by side, and the linkage that takes them, or TL_NONE */
 } tl_linkage_shape;
 
@@ -123,6 +124,7 @@ typedef struct tl_linkage {
     uint32_t values;             /* in linkage_values */
     uint32_t lanes, wide;        /* sets in it; 1 if it is solved eight wide */
     uint32_t far;                /* 1 if it is to be pushed again */
+    uint32_t exact;              /* 1 if nothing but equalities holds its bodies */
     /* Of one that is cut into pieces: joints of a piece, cuts (0: it is not cut), groups from, nodes of a piece and
      * then of the cuts, values of the cuts behind those of the pieces */
     uint32_t inner, cuts, first_group, cut, cut_values;
