@@ -1,6 +1,7 @@
 /* Groups: constraints that may be solved side by side, eight at a time. Within a colour no two share a moving body, so
  * the lanes of a group write to different rows. What found no colour is packed as it comes, as long as nothing is
  * shared. */
+#include <stddef.h>
 #include <string.h>
 
 #include "stage/row/groups.h"
@@ -111,17 +112,25 @@ int tl_joints_alike(const tl_joint_record *a, const tl_joint_record *b) {
            memcmp(a->code, b->code, sizeof a->code) == 0;
 }
 
+static uint32_t needs_of(const tl_joint_record *j) {
+    uint32_t needs = j->fixed >= 3u ? (uint32_t)TL_JOINT_POINT : 0u;
+    for (uint32_t r = 0; r < 3u && r < j->rows; r++) {
+        needs = j->code[r] == TL_ROW_LINEAR + r + TL_ROW_TYPES * TL_ROW_EQUAL ? needs : 0u;
+    }
+    return j->rows > (needs ? 3u : 0u) ? needs | TL_JOINT_AXES : needs;
+}
+
 tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j) {
     if (h->joint_groups >= h->capacity[TL_COUNT_JOINTGROUP] ||
         h->joint_rows + j->rows > h->capacity[TL_COUNT_JOINTROW]) {
         return NULL;
     }
     tl_joint_group *g = &tl_joint_group_pool(h)[h->joint_groups++];
-    memset(g, 0, sizeof *g);
+    memset(g, 0, offsetof(tl_joint_group, k));
     for (uint32_t k = 0; k < TL_LANES; k++) {
         g->qa[3][k] = g->qb[3][k] = 1.0f;
     }
-    g->rows = j->rows, g->fixed = j->fixed, g->exact = 1u;
+    g->rows = j->rows, g->fixed = j->fixed, g->exact = 1u, g->needs = needs_of(j);
     g->first_row = h->joint_rows;
     g->free_axis = j->free_axis == TL_NONE ? 0u : j->free_axis;
     memcpy(g->code, j->code, sizeof g->code);
@@ -130,7 +139,9 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j) {
             g->active[r][k] = 1.0f;
         }
     }
-    memset(tl_joint_row_pool(h) + g->first_row, 0, j->rows * sizeof(tl_joint_row));
+    for (uint32_t r = 0; r < j->rows; r++) {
+        memset(tl_joint_row_pool(h)[g->first_row + r].lower, 0, sizeof(tl_joint_row) - offsetof(tl_joint_row, lower));
+    }
     h->joint_rows += j->rows;
     return g;
 }

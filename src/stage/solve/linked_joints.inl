@@ -11,7 +11,7 @@ static inline tl_m8 is_hard(const tl_joint_row *row) {
 static inline tl_f8 speed_to_meet(const tl_joint_group *g, const tl_joint_row *rows, uint32_t k,
                                   const pair_velocity *p) {
     tl_f8 give = tl_f8_mul(tl_f8_set1(TL_BLOCK_RAISE), tl_f8_load(g->matrix[k * (k + 1u) / 2u + k]));
-    return tl_f8_mad(joint_speed(p, &rows[k], is_linear_row(g->code[k])), give, tl_f8_load(rows[k].impulse));
+    return tl_f8_mad(joint_speed(p, &rows[k], row_kind(g, k)), give, tl_f8_load(rows[k].impulse));
 }
 
 static inline void set_active(tl_joint_group *g, uint32_t k, tl_m8 holds) {
@@ -81,7 +81,7 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
         tl_m8 far = tl_m8_zero();
         for (uint32_t k = 0; k < g->fixed; k++) {
             tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
-            error = tl_f8_add(error, joint_speed(&p, &rows[k], is_linear_row(g->code[k])));
+            error = tl_f8_add(error, joint_speed(&p, &rows[k], row_kind(g, k)));
             tl_f8_store(g->x[k], tl_f8_neg(error));
             tl_f8 most = tl_f8_set1(is_linear_row(g->code[k]) ? FAR_AWAY : FAR_TURNED);
             far = tl_m8_or(far, tl_f8_gt(tl_f8_abs(error), most));
@@ -125,7 +125,7 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
             if (!counts_for_last(step, g)) {
                 tl_f8_store(rows[k].impulse, now);
             }
-            joint_apply(&p, &rows[k], linear, tl_f8_sub(now, old));
+            joint_apply(&p, &rows[k], row_kind(g, k), tl_f8_sub(now, old));
             pull = linear ? v8_mad(pull, now, v8_load(rows[k].n[0])) : pull;
         }
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(pulls) ? (uint32_t)TL_FAR_NOW : 0u);
@@ -144,7 +144,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
         pair_velocity p;
         load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
         for (uint32_t k = 0; k < g->linked; k++) {
-            joint_apply(&p, &rows[k], is_linear_row(g->code[k]), tl_f8_load(g->x[k]));
+            joint_apply(&p, &rows[k], row_kind(g, k), tl_f8_load(g->x[k]));
         }
         store_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
     }

@@ -64,21 +64,27 @@ typedef struct tl_contact_group {
 #define TL_JOINT_ROWS 12u
 #define TL_LINK_ROWS 6u
 
-/* One scalar row of eight joints. */
+/* One scalar row of eight joints: what is made of the poses, then what stays. */
 typedef struct tl_joint_row {
     float n[3][TL_LANES];                   /* linear direction or angular axis */
     float ja[3][TL_LANES], jb[3][TL_LANES]; /* whitened */
     float error[TL_LANES];                  /* m or rad */
-    float curve[TL_LANES]; /* m/s: half of what the bodies' turning adds to the error's rate in a sub-step */
+    float curve[TL_LANES];    /* m/s: half of what the bodies' turning adds to the error's rate in a sub-step */
+    float mass[TL_LANES];     /* of ranges and drives */
+    float at_lower[TL_LANES]; /* 1: the lower side of the range is the near one; of ranges */
     float lower[TL_LANES], upper[TL_LANES]; /* of the position, or target twice for a drive */
     float stiffness[TL_LANES], damping[TL_LANES];
     float speed[TL_LANES];    /* target of a drive */
     float most[TL_LANES];     /* N or N m: bound of the force */
     float per_mass[TL_LANES]; /* 1: stiffness and damping are per effective mass */
     float impulse[TL_LANES];
-    float mass[TL_LANES];
-    float at_lower[TL_LANES]; /* 1: the lower side of the range is the near one */
 } tl_joint_row;
+
+/* joint_group.needs: what its rows are made of. */
+enum {
+    TL_JOINT_POINT = 1, /* the first three rows hold a point: they are along the world's axes */
+    TL_JOINT_AXES = 2   /* others are along frame a or tell how it stands to frame b */
+};
 
 /* joint_group.far: an error is so large that taking it back leaves one; the group is pushed again. */
 enum { TL_FAR_NOW = 1, TL_FAR_AGAIN = 2 };
@@ -93,18 +99,20 @@ typedef struct tl_joint_group {
     uint32_t stiff;              /* linked: one pulls so hard that its bodies are to be looked at */
     uint32_t far;                /* linked: TL_FAR_* */
     uint32_t exact;              /* one solve of its velocities in a sub-step leaves nothing to solve */
-    uint32_t reserved[2];
+    uint32_t needs;              /* TL_JOINT_* */
+    uint32_t reserved;
     uint32_t code[TL_JOINT_ROWS];
     float pa[3][TL_LANES], qa[4][TL_LANES]; /* the joint's frame in a's mass frame */
     float pb[3][TL_LANES], qb[4][TL_LANES];
     float mass[2][TL_LANES], turns[2][TL_LANES]; /* of a and b: inverse mass, 1 if impulses turn it */
+    float active[TL_LINK_ROWS][TL_LANES];        /* linked: 1 for a row that holds now */
+    float give[2][TL_LANES]; /* m / (kg m^2): |arm| over the least moment of inertia across it, of a and b */
+    float pull[TL_LANES];    /* N s: the linear impulse of a sub-step */
+    float k[2][9][TL_LANES]; /* K of a and b, by rows */
     /* The matrix of the first rows, the lower half by rows. Of linked joints it takes in their hard ranges; of others
      * it is the equalities' and stands as L D L^T with D inverted. */
     float matrix[21][TL_LANES];
-    float active[TL_LINK_ROWS][TL_LANES]; /* linked: 1 for a row that holds now */
-    float x[TL_LINK_ROWS][TL_LANES];      /* linked: speeds or errors to be met, then impulses */
-    float give[2][TL_LANES]; /* m / (kg m^2): |arm| over the least moment of inertia across it, of a and b */
-    float pull[TL_LANES];    /* N s: the linear impulse of a sub-step */
+    float x[TL_LINK_ROWS][TL_LANES]; /* linked: speeds or errors to be met, then impulses */
 } tl_joint_group;
 
 /* A structure that linkages have in common. */
