@@ -71,12 +71,6 @@ TL_INLINE q8 q8_normalize(q8 q) {
     tl_f8 n = tl_f8_sqrt(tl_f8_mad(tl_f8_mad(tl_f8_mad(tl_f8_mul(q.x, q.x), q.y, q.y), q.z, q.z), q.w, q.w));
     return q8_of(tl_f8_div(q.x, n), tl_f8_div(q.y, n), tl_f8_div(q.z, n), tl_f8_div(q.w, n));
 }
-/* Of what is a unit quaternion but for rounding: one step of Newton's to 1 / |q|. */
-TL_INLINE q8 q8_renormalize(q8 q) {
-    tl_f8 n = tl_f8_add(tl_f8_mad(tl_f8_mul(q.x, q.x), q.y, q.y), tl_f8_mad(tl_f8_mul(q.z, q.z), q.w, q.w));
-    tl_f8 f = tl_f8_sub(tl_f8_set1(1.5f), tl_f8_mul(tl_f8_set1(0.5f), n));
-    return q8_of(tl_f8_mul(q.x, f), tl_f8_mul(q.y, f), tl_f8_mul(q.z, f), tl_f8_mul(q.w, f));
-}
 TL_INLINE q8 q8_select(tl_m8 m, q8 a, q8 b) {
     return q8_of(tl_f8_select(m, a.x, b.x), tl_f8_select(m, a.y, b.y), tl_f8_select(m, a.z, b.z),
                  tl_f8_select(m, a.w, b.w));

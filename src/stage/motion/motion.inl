@@ -18,8 +18,8 @@
 
 static inline tl_f8 cut(tl_f8 x) { return tl_f8_max(tl_f8_min(x, tl_f8_set1(MOST_SPEED)), tl_f8_set1(-MOST_SPEED)); }
 
-/* exp of half of the rotation vector h w, cut to MOST_TURN: (r sin(t/2) / t, cos(t/2)) with t = |r|, by Taylor series
- * in x = (t/2)^2: below 1e-7 to x = 2.25. */
+/* exp of half of the rotation vector h w, cut to MOST_TURN, less one: (r sin(t/2) / t, cos(t/2) - 1) with t = |r|, by
+ * Taylor series in x = (t/2)^2: below 1e-7 to x = 2.25. */
 static q8 turn_far(v8 w, tl_f8 h) {
     v8 r = v8_scale(v8_of(cut(w.x), cut(w.y), cut(w.z)), h);
     tl_f8 t = tl_f8_sqrt(v8_dot(r, r)), most = tl_f8_set1(MOST_TURN);
@@ -35,23 +35,36 @@ static q8 turn_far(v8 w, tl_f8 h) {
     c = tl_f8_mad(tl_f8_set1(1.0f / 40320.0f), x, c);
     c = tl_f8_mad(tl_f8_set1(-1.0f / 720.0f), x, c);
     c = tl_f8_mad(tl_f8_set1(1.0f / 24.0f), x, c);
-    c = tl_f8_mad(tl_f8_set1(-0.5f), x, c);
-    c = tl_f8_mad(tl_f8_set1(1.0f), x, c);
+    c = tl_f8_mul(x, tl_f8_mad(tl_f8_set1(-0.5f), x, c));
     v8 v = v8_scale(r, tl_f8_mul(tl_f8_set1(0.5f), s));
     return q8_of(v.x, v.y, v.z, c);
 }
 
-/* The turn by h w. Most are small, and the series' first terms are then as good, to 1e-9. */
+/* The turn by h w, less one, for what is near one has no digits left for it. Most are small, and the series' first
+ * terms are then as good, to 1e-9. */
 static inline q8 turn_by(v8 w, tl_f8 h) {
     v8 half = v8_scale(w, tl_f8_mul(tl_f8_set1(0.5f), h));
     tl_f8 x = v8_dot(half, half), xx = tl_f8_mul(x, x), one = tl_f8_set1(1.0f);
     tl_m8 small = tl_f8_le(x, tl_f8_set1(0.25f * SMALL_TURN * SMALL_TURN));
     tl_f8 s = tl_f8_mad(tl_f8_mad(one, x, tl_f8_set1(-1.0f / 6.0f)), xx,
                         tl_f8_mad(tl_f8_set1(1.0f / 120.0f), x, tl_f8_set1(-1.0f / 5040.0f)));
-    tl_f8 c = tl_f8_mad(tl_f8_mad(one, x, tl_f8_set1(-0.5f)), xx,
+    tl_f8 c = tl_f8_mad(tl_f8_mul(tl_f8_set1(-0.5f), x), xx,
                         tl_f8_mad(tl_f8_set1(1.0f / 24.0f), x, tl_f8_set1(-1.0f / 720.0f)));
     q8 q = q8_of(tl_f8_mul(half.x, s), tl_f8_mul(half.y, s), tl_f8_mul(half.z, s), c);
     return tl_m8_all(small) ? q : q8_select(small, q, turn_far(w, h));
+}
+
+/* A turn that turn_by gave, to rotate with. */
+static inline q8 whole(q8 turn) { return q8_of(turn.x, turn.y, turn.z, tl_f8_add(turn.w, tl_f8_set1(1.0f))); }
+
+/* The unit quaternion q + d, d being small: rounded once, and kept a unit by one step of Newton's to 1 / |q|. */
+static inline q8 turned_by(q8 q, q8 d) {
+    q8 sum = q8_of(tl_f8_add(q.x, d.x), tl_f8_add(q.y, d.y), tl_f8_add(q.z, d.z), tl_f8_add(q.w, d.w));
+    tl_f8 n =
+        tl_f8_add(tl_f8_mad(tl_f8_mul(sum.x, sum.x), sum.y, sum.y), tl_f8_mad(tl_f8_mul(sum.z, sum.z), sum.w, sum.w));
+    tl_f8 f = tl_f8_mul(tl_f8_set1(0.5f), tl_f8_sub(tl_f8_set1(1.0f), n));
+    return q8_of(tl_f8_add(q.x, tl_f8_mad(d.x, f, sum.x)), tl_f8_add(q.y, tl_f8_mad(d.y, f, sum.y)),
+                 tl_f8_add(q.z, tl_f8_mad(d.z, f, sum.z)), tl_f8_add(q.w, tl_f8_mad(d.w, f, sum.w)));
 }
 
 TL_INLINE void load_eight(const tl_row8 *rows, tl_f8 out[8]) {
@@ -103,9 +116,9 @@ static inline q8 euler_turn(q8 q, v8 l, v8 s2, tl_f8 h) {
     v8 own = q8_rotate_back(q, l), mean = v8_mul(s2, own);
     mean = v8_mul(s2, v8_mad(own, half, v8_cross(own, mean)));
     for (int i = 0; i < 2; i++) {
-        mean = v8_mul(s2, q8_rotate_back(turn_by(mean, half), own));
+        mean = v8_mul(s2, q8_rotate_back(whole(turn_by(mean, half)), own));
     }
-    return q8_renormalize(q8_mul(q, turn_by(mean, h)));
+    return turned_by(q, q8_mul(q, turn_by(mean, h)));
 }
 
 /* Takes what the impulses changed into the momentum of the gyroscopic lanes, turns their q and finds the new u. */
@@ -138,7 +151,7 @@ static inline void move_on(const tl_step *step, rows8 *r, tl_m8 gyro) {
     }
     q8 q = q8_of(p[3], p[4], p[5], p[6]), frame = q8_of(r->frame[0], r->frame[1], r->frame[2], r->frame[3]);
     v8 w = q8_rotate(frame, v8_mul(v8_of(r->frame[4], r->frame[5], r->frame[6]), v8_of(v[3], v[4], v[5])));
-    q8 turned = q8_renormalize(q8_mul(turn_by(w, h), q));
+    q8 turned = turned_by(q, q8_mul(turn_by(w, h), q));
     if (tl_m8_any(gyro)) {
         gyroscope(step, r, gyro, frame, &q, turned);
         turned = q;
@@ -235,12 +248,12 @@ static void push(const tl_step *step, uint32_t first, uint32_t last) {
         }
         q8 q = q8_of(p[3], p[4], p[5], p[6]), frame = q8_of(f[0], f[1], f[2], f[3]);
         v8 w = q8_rotate(frame, v8_mul(v8_of(f[4], f[5], f[6]), v8_of(d[3], d[4], d[5])));
-        q8 turn = turn_by(w, tl_f8_set1(1.0f)), turned = q8_renormalize(q8_mul(turn, q));
+        q8 turn = turn_by(w, tl_f8_set1(1.0f)), turned = turned_by(q, q8_mul(turn, q));
         /* A slender body's spin about its own axis turns with it: a little of the momentum across would be a lot there.
          */
         v8 momentum = v8_of(l[0], l[1], l[2]);
         tl_m8 follows = tl_m8_and(pushed, tl_f8_gt(l[6], tl_f8_zero()));
-        momentum = v8_select(follows, q8_rotate(turn, momentum), momentum);
+        momentum = v8_select(follows, q8_rotate(whole(turn), momentum), momentum);
         l[0] = momentum.x, l[1] = momentum.y, l[2] = momentum.z;
         store_eight(momenta + i, l);
         p[3] = tl_f8_select(pushed, turned.x, q.x), p[4] = tl_f8_select(pushed, turned.y, q.y);

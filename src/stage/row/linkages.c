@@ -190,8 +190,9 @@ static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
         float reach = 0.0f;
         reach += free_row(h, j->body_a) ? tl_body_inertias(h)[j->body_a].reach : 0.0f;
         reach += free_row(h, j->body_b) ? tl_body_inertias(h)[j->body_b].reach : 0.0f;
-        float spin = tl_max(tl_length(tl_row_345(a)), tl_length(tl_row_345(b)));
-        if (!(spin * step->sub < WILD_TURN) || !(error_of(h, j) < WILD_SHARE * reach)) {
+        talus_vec3 wa = tl_row_345(a), wb = tl_row_345(b);
+        float spin = tl_max(tl_dot(wa, wa), tl_dot(wb, wb)); /* squared */
+        if (!(spin * (step->sub * step->sub) < WILD_TURN * WILD_TURN) || !(error_of(h, j) < WILD_SHARE * reach)) {
             return 1;
         }
     }

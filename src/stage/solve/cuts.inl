@@ -80,13 +80,23 @@ static void cut_factor(const tl_header *h, const tl_linkage *l, float *v) {
     tl_cuts_factor(h, l);
 }
 
+static int cut_is_stale(const tl_header *h, const tl_linkage *l) {
+    uint32_t stale = 0;
+    for (uint32_t j = 0; j <= l->inner; j++) {
+        tl_joint_group *g = &tl_joint_group_pool(h)[l->first_group + j];
+        stale |= g->stale;
+        g->stale = 0;
+    }
+    return stale != 0;
+}
+
 /* The x of a cut linkage's joints becomes the impulses that meet it. */
 static void cut_solve(const tl_header *h, const tl_linkage *l) {
     const tl_block_node *node = tl_linkage_nodes(h) + l->cut, *cut = node + l->inner + 2u;
     const uint32_t *live = tl_linkage_live(h) + l->first_place, inner = l->inner;
     float *v = tl_linkage_values(h) + l->values, *rest = v + l->cut_values;
     float *behind = v + node[inner].x * TL_WIDTH, *before = v + node[inner + 1u].x * TL_WIDTH;
-    if (link_is_stale(h, l)) {
+    if (cut_is_stale(h, l)) {
         cut_factor(h, l, v);
     }
     for (uint32_t j = 0; j <= inner; j++) {
