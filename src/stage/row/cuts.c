@@ -101,7 +101,7 @@ int tl_linkage_cut(tl_step *step, tl_linkage *l, const tl_linkage_shape *s, tl_l
     *room = taken;
     l->first_group = h->joint_groups, l->wide = 1u;
     for (uint32_t k = 0; k < piece; k++) {
-        tl_joint_group_open(h, j)->linked = tl_linked_rows(j);
+        tl_joint_group_open(h, j, 1u)->linked = tl_linked_rows(j);
     }
     for (uint32_t i = 0; i < s->nodes; i++) {
         tl_joint_group *g = &tl_joint_group_pool(h)[l->first_group + i % piece];

@@ -7,8 +7,9 @@
 /* Whether two joints have the same rows and so may stand in one group. */
 int tl_joints_alike(const tl_joint_record *a, const tl_joint_record *b);
 
-/* An empty group for joints like j, or null if there is no room. */
-tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j);
+/* An empty group for joints like j, or null if there is no room. `direct` is 1 for joints that are linked or exact:
+ * what their solve begins with is no matter to it. */
+tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint32_t direct);
 
 /* Puts a joint into the next lane of a group. */
 void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint);

@@ -295,6 +295,13 @@ static void store_joints(const tl_step *step, uint32_t first, uint32_t last) {
                     sum[k] += rows[r].n[k][lane] * strength;
                 }
             }
+            if (g->needs & TL_JOINT_POINT) {
+                talus_quat own = {g->qa[0][lane], g->qa[1][lane], g->qa[2][lane], g->qa[3][lane]};
+                talus_quat frame = tl_quat_mul(tl_row_quat(&tl_row_pose(step->h)[g->a[lane]]), own);
+                talus_vec3 impulse = tl_rotate_back(frame, tl_v(s->impulse[0], s->impulse[1], s->impulse[2]));
+                impulse = tl_is_finite3(impulse) ? impulse : tl_v(0.0f, 0.0f, 0.0f);
+                s->impulse[0] = impulse.x, s->impulse[1] = impulse.y, s->impulse[2] = impulse.z;
+            }
             for (uint32_t k = 0; k < 3u; k++) {
                 s->force[k] = tl_is_finite(s->force[k]) ? s->force[k] : 0.0f;
                 s->torque[k] = tl_is_finite(s->torque[k]) ? s->torque[k] : 0.0f;

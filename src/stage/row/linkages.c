@@ -242,7 +242,7 @@ static int open_groups(finder *f, tl_linkage *l, const tl_linkage_shape *s) {
     uint32_t groups = h->joint_groups;
     for (uint32_t k = 0; k < s->nodes; k++) {
         const tl_joint_record *j = &tl_joints(h)[tl_linkage_order(h)[l->first_joint + s->nodes - 1u - k]];
-        tl_joint_group *g = tl_joint_group_open(h, j);
+        tl_joint_group *g = tl_joint_group_open(h, j, 1u);
         if (!g) {
             return 0;
         }

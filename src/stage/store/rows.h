@@ -82,7 +82,8 @@ typedef struct tl_joint_row {
 
 /* joint_group.needs: what its rows are made of. */
 enum {
-    TL_JOINT_POINT = 1, /* the first three rows hold a point: they are along the world's axes */
+    TL_JOINT_POINT = 1, /* the first three rows hold a point and are along the world's axes; their impulses are kept
+                         * along frame a, as others are */
     TL_JOINT_AXES = 2   /* others are along frame a or tell how it stands to frame b */
 };
 
