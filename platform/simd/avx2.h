@@ -77,7 +77,7 @@ static inline tl_i8 tl_i8_bits_of_f8(tl_f8 a) { return _mm256_castps_si256(a); }
 static inline tl_f8 tl_f8_of_bits(tl_i8 a) { return _mm256_castsi256_ps(a); }
 
 /* Four 4x4 transposes in place, of the 4x4 block in each 128-bit half of r[0..3] and of r[4..7]. */
-static inline void tl_avx2_transpose_blocks(__m256 r[8]) {
+TL_INLINE void tl_avx2_transpose_blocks(__m256 r[8]) {
     __m256 a0 = _mm256_unpacklo_ps(r[0], r[1]), a1 = _mm256_unpackhi_ps(r[0], r[1]);
     __m256 a2 = _mm256_unpacklo_ps(r[2], r[3]), a3 = _mm256_unpackhi_ps(r[2], r[3]);
     __m256 a4 = _mm256_unpacklo_ps(r[4], r[5]), a5 = _mm256_unpackhi_ps(r[4], r[5]);
@@ -91,7 +91,7 @@ static inline void tl_avx2_transpose_blocks(__m256 r[8]) {
     r[6] = _mm256_shuffle_ps(a5, a7, _MM_SHUFFLE(1, 0, 1, 0));
     r[7] = _mm256_shuffle_ps(a5, a7, _MM_SHUFFLE(3, 2, 3, 2));
 }
-static inline void tl_f8_transpose(tl_f8 r[8]) {
+TL_INLINE void tl_f8_transpose(tl_f8 r[8]) {
     __m256 t0 = _mm256_permute2f128_ps(r[0], r[4], 0x20), t4 = _mm256_permute2f128_ps(r[0], r[4], 0x31);
     __m256 t1 = _mm256_permute2f128_ps(r[1], r[5], 0x20), t5 = _mm256_permute2f128_ps(r[1], r[5], 0x31);
     __m256 t2 = _mm256_permute2f128_ps(r[2], r[6], 0x20), t6 = _mm256_permute2f128_ps(r[2], r[6], 0x31);
@@ -103,8 +103,8 @@ static inline void tl_f8_transpose(tl_f8 r[8]) {
 static inline __m256 tl_avx2_load_halves(const float *lower, const float *upper) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(lower)), _mm_loadu_ps(upper), 1);
 }
-static inline void tl_f8_load_rows_stride(const float *base, uint32_t stride_floats, const uint32_t index[8],
-                                          tl_f8 out[8]) {
+TL_INLINE void tl_f8_load_rows_stride(const float *base, uint32_t stride_floats, const uint32_t index[8],
+                                      tl_f8 out[8]) {
     const float *p0 = base + (size_t)stride_floats * index[0], *p4 = base + (size_t)stride_floats * index[4];
     const float *p1 = base + (size_t)stride_floats * index[1], *p5 = base + (size_t)stride_floats * index[5];
     const float *p2 = base + (size_t)stride_floats * index[2], *p6 = base + (size_t)stride_floats * index[6];
@@ -115,10 +115,10 @@ static inline void tl_f8_load_rows_stride(const float *base, uint32_t stride_flo
     out[3] = tl_avx2_load_halves(p3, p7), out[7] = tl_avx2_load_halves(p3 + 4, p7 + 4);
     tl_avx2_transpose_blocks(out);
 }
-static inline void tl_f8_load_rows(const float *base, const uint32_t index[8], tl_f8 out[8]) {
+TL_INLINE void tl_f8_load_rows(const float *base, const uint32_t index[8], tl_f8 out[8]) {
     tl_f8_load_rows_stride(base, 8, index, out);
 }
-static inline void tl_f8_store_rows(float *base, const uint32_t index[8], const tl_f8 in[8]) {
+TL_INLINE void tl_f8_store_rows(float *base, const uint32_t index[8], const tl_f8 in[8]) {
     __m256 r[8] = {in[0], in[1], in[2], in[3], in[4], in[5], in[6], in[7]};
     tl_avx2_transpose_blocks(r);
     /* r[k] and r[k + 4] hold rows k (lower halves) and k + 4 (upper halves); a store of an upper half is no shuffle */

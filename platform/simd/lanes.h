@@ -77,6 +77,13 @@
 #error "define exactly one of TL_LANES_SCALAR, TL_LANES_SSE2, TL_LANES_AVX2, TL_LANES_NEON, TL_LANES_WASM"
 #endif
 
+/* Of functions of many lanes: to pass those in memory costs as much as such a function does. */
+#if defined(__GNUC__)
+#define TL_INLINE static inline __attribute__((always_inline))
+#else
+#define TL_INLINE static inline
+#endif
+
 #if defined(TL_LANES_SCALAR)
 #include "scalar.h"
 #elif defined(TL_LANES_SSE2)

@@ -133,7 +133,7 @@ static inline tl_f8 tl_f8_of_bits(tl_i8 a) {
 }
 
 /* The 4x4 transpose of a..d, in place. */
-static inline void tl_neon_transpose4(float32x4_t *a, float32x4_t *b, float32x4_t *c, float32x4_t *d) {
+TL_INLINE void tl_neon_transpose4(float32x4_t *a, float32x4_t *b, float32x4_t *c, float32x4_t *d) {
     float64x2_t t0 = vreinterpretq_f64_f32(vtrn1q_f32(*a, *b)), t1 = vreinterpretq_f64_f32(vtrn2q_f32(*a, *b));
     float64x2_t t2 = vreinterpretq_f64_f32(vtrn1q_f32(*c, *d)), t3 = vreinterpretq_f64_f32(vtrn2q_f32(*c, *d));
     *a = vreinterpretq_f32_f64(vtrn1q_f64(t0, t2));
@@ -141,7 +141,7 @@ static inline void tl_neon_transpose4(float32x4_t *a, float32x4_t *b, float32x4_
     *c = vreinterpretq_f32_f64(vtrn2q_f64(t0, t2));
     *d = vreinterpretq_f32_f64(vtrn2q_f64(t1, t3));
 }
-static inline void tl_f8_transpose(tl_f8 r[8]) {
+TL_INLINE void tl_f8_transpose(tl_f8 r[8]) {
     tl_neon_transpose4(&r[0].lo, &r[1].lo, &r[2].lo, &r[3].lo);
     tl_neon_transpose4(&r[0].hi, &r[1].hi, &r[2].hi, &r[3].hi);
     tl_neon_transpose4(&r[4].lo, &r[5].lo, &r[6].lo, &r[7].lo);
@@ -152,8 +152,8 @@ static inline void tl_f8_transpose(tl_f8 r[8]) {
         r[i + 4].lo = t;
     }
 }
-static inline void tl_f8_load_rows_stride(const float *base, uint32_t stride_floats, const uint32_t index[8],
-                                          tl_f8 out[8]) {
+TL_INLINE void tl_f8_load_rows_stride(const float *base, uint32_t stride_floats, const uint32_t index[8],
+                                      tl_f8 out[8]) {
     for (int k = 0; k < 4; k++) {
         const float *p = base + (size_t)stride_floats * index[k], *q = base + (size_t)stride_floats * index[k + 4];
         out[k].lo = vld1q_f32(p);
@@ -166,10 +166,10 @@ static inline void tl_f8_load_rows_stride(const float *base, uint32_t stride_flo
     tl_neon_transpose4(&out[4].lo, &out[5].lo, &out[6].lo, &out[7].lo);
     tl_neon_transpose4(&out[4].hi, &out[5].hi, &out[6].hi, &out[7].hi);
 }
-static inline void tl_f8_load_rows(const float *base, const uint32_t index[8], tl_f8 out[8]) {
+TL_INLINE void tl_f8_load_rows(const float *base, const uint32_t index[8], tl_f8 out[8]) {
     tl_f8_load_rows_stride(base, 8, index, out);
 }
-static inline void tl_f8_store_rows(float *base, const uint32_t index[8], const tl_f8 in[8]) {
+TL_INLINE void tl_f8_store_rows(float *base, const uint32_t index[8], const tl_f8 in[8]) {
     tl_f8 r[8] = {in[0], in[1], in[2], in[3], in[4], in[5], in[6], in[7]};
     tl_f8_transpose(r);
     for (int k = 0; k < 8; k++) {

@@ -160,7 +160,7 @@ static inline tl_i8 tl_i8_bits_of_f8(tl_f8 a) { return tl_sse2_i8(_mm_castps_si1
 static inline tl_f8 tl_f8_of_bits(tl_i8 a) { return tl_sse2_f8(_mm_castsi128_ps(a.lo), _mm_castsi128_ps(a.hi)); }
 
 /* The 4x4 transpose of a..d, in place. */
-static inline void tl_sse2_transpose4(__m128 *a, __m128 *b, __m128 *c, __m128 *d) {
+TL_INLINE void tl_sse2_transpose4(__m128 *a, __m128 *b, __m128 *c, __m128 *d) {
     __m128 t0 = _mm_unpacklo_ps(*a, *b), t1 = _mm_unpackhi_ps(*a, *b);
     __m128 t2 = _mm_unpacklo_ps(*c, *d), t3 = _mm_unpackhi_ps(*c, *d);
     *a = _mm_movelh_ps(t0, t2);
@@ -168,7 +168,7 @@ static inline void tl_sse2_transpose4(__m128 *a, __m128 *b, __m128 *c, __m128 *d
     *c = _mm_movelh_ps(t1, t3);
     *d = _mm_movehl_ps(t3, t1);
 }
-static inline void tl_f8_transpose(tl_f8 r[8]) {
+TL_INLINE void tl_f8_transpose(tl_f8 r[8]) {
     tl_sse2_transpose4(&r[0].lo, &r[1].lo, &r[2].lo, &r[3].lo);
     tl_sse2_transpose4(&r[0].hi, &r[1].hi, &r[2].hi, &r[3].hi);
     tl_sse2_transpose4(&r[4].lo, &r[5].lo, &r[6].lo, &r[7].lo);
@@ -179,8 +179,8 @@ static inline void tl_f8_transpose(tl_f8 r[8]) {
         r[i + 4].lo = t;
     }
 }
-static inline void tl_f8_load_rows_stride(const float *base, uint32_t stride_floats, const uint32_t index[8],
-                                          tl_f8 out[8]) {
+TL_INLINE void tl_f8_load_rows_stride(const float *base, uint32_t stride_floats, const uint32_t index[8],
+                                      tl_f8 out[8]) {
     for (int k = 0; k < 4; k++) {
         const float *p = base + (size_t)stride_floats * index[k], *q = base + (size_t)stride_floats * index[k + 4];
         out[k].lo = _mm_loadu_ps(p);
@@ -193,10 +193,10 @@ static inline void tl_f8_load_rows_stride(const float *base, uint32_t stride_flo
     tl_sse2_transpose4(&out[4].lo, &out[5].lo, &out[6].lo, &out[7].lo);
     tl_sse2_transpose4(&out[4].hi, &out[5].hi, &out[6].hi, &out[7].hi);
 }
-static inline void tl_f8_load_rows(const float *base, const uint32_t index[8], tl_f8 out[8]) {
+TL_INLINE void tl_f8_load_rows(const float *base, const uint32_t index[8], tl_f8 out[8]) {
     tl_f8_load_rows_stride(base, 8, index, out);
 }
-static inline void tl_f8_store_rows(float *base, const uint32_t index[8], const tl_f8 in[8]) {
+TL_INLINE void tl_f8_store_rows(float *base, const uint32_t index[8], const tl_f8 in[8]) {
     tl_f8 r[8] = {in[0], in[1], in[2], in[3], in[4], in[5], in[6], in[7]};
     tl_f8_transpose(r);
     for (int k = 0; k < 8; k++) {

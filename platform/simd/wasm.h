@@ -182,7 +182,7 @@ static inline tl_i8 tl_i8_bits_of_f8(tl_f8 a) { return tl_wasm_i8(a.lo, a.hi); }
 static inline tl_f8 tl_f8_of_bits(tl_i8 a) { return tl_wasm_f8(a.lo, a.hi); }
 
 /* The 4x4 transpose of a..d, in place. */
-static inline void tl_wasm_transpose4(v128_t *a, v128_t *b, v128_t *c, v128_t *d) {
+TL_INLINE void tl_wasm_transpose4(v128_t *a, v128_t *b, v128_t *c, v128_t *d) {
     v128_t t0 = wasm_i32x4_shuffle(*a, *b, 0, 4, 1, 5), t1 = wasm_i32x4_shuffle(*a, *b, 2, 6, 3, 7);
     v128_t t2 = wasm_i32x4_shuffle(*c, *d, 0, 4, 1, 5), t3 = wasm_i32x4_shuffle(*c, *d, 2, 6, 3, 7);
     *a = wasm_i32x4_shuffle(t0, t2, 0, 1, 4, 5);
@@ -190,7 +190,7 @@ static inline void tl_wasm_transpose4(v128_t *a, v128_t *b, v128_t *c, v128_t *d
     *c = wasm_i32x4_shuffle(t1, t3, 0, 1, 4, 5);
     *d = wasm_i32x4_shuffle(t1, t3, 2, 3, 6, 7);
 }
-static inline void tl_f8_transpose(tl_f8 r[8]) {
+TL_INLINE void tl_f8_transpose(tl_f8 r[8]) {
     tl_wasm_transpose4(&r[0].lo, &r[1].lo, &r[2].lo, &r[3].lo);
     tl_wasm_transpose4(&r[0].hi, &r[1].hi, &r[2].hi, &r[3].hi);
     tl_wasm_transpose4(&r[4].lo, &r[5].lo, &r[6].lo, &r[7].lo);
@@ -201,8 +201,8 @@ static inline void tl_f8_transpose(tl_f8 r[8]) {
         r[i + 4].lo = t;
     }
 }
-static inline void tl_f8_load_rows_stride(const float *base, uint32_t stride_floats, const uint32_t index[8],
-                                          tl_f8 out[8]) {
+TL_INLINE void tl_f8_load_rows_stride(const float *base, uint32_t stride_floats, const uint32_t index[8],
+                                      tl_f8 out[8]) {
     for (int k = 0; k < 4; k++) {
         const float *p = base + (size_t)stride_floats * index[k], *q = base + (size_t)stride_floats * index[k + 4];
         out[k].lo = wasm_v128_load(p);
@@ -215,10 +215,10 @@ static inline void tl_f8_load_rows_stride(const float *base, uint32_t stride_flo
     tl_wasm_transpose4(&out[4].lo, &out[5].lo, &out[6].lo, &out[7].lo);
     tl_wasm_transpose4(&out[4].hi, &out[5].hi, &out[6].hi, &out[7].hi);
 }
-static inline void tl_f8_load_rows(const float *base, const uint32_t index[8], tl_f8 out[8]) {
+TL_INLINE void tl_f8_load_rows(const float *base, const uint32_t index[8], tl_f8 out[8]) {
     tl_f8_load_rows_stride(base, 8, index, out);
 }
-static inline void tl_f8_store_rows(float *base, const uint32_t index[8], const tl_f8 in[8]) {
+TL_INLINE void tl_f8_store_rows(float *base, const uint32_t index[8], const tl_f8 in[8]) {
     tl_f8 r[8] = {in[0], in[1], in[2], in[3], in[4], in[5], in[6], in[7]};
     tl_f8_transpose(r);
     for (int k = 0; k < 8; k++) {

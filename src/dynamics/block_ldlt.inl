@@ -157,8 +157,7 @@ static void ldlt_hand_up(const tl_block_node *node, const tl_block *block, const
     }
 }
 
-static void ldlt_factor(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
-                        float *v) {
+static void ldlt_raise(const tl_block_node *node, const uint32_t *live, uint32_t nodes, float *v) {
     wf raise = wf_set1(1.0f + TL_BLOCK_RAISE);
     for (uint32_t j = 0; j < nodes; j++) {
         float *d = v + node[j].diagonal * TL_WIDTH;
@@ -167,6 +166,11 @@ static void ldlt_factor(const tl_block_node *node, const tl_block *block, const 
             wf_store(at, wf_mul(wf_load(at), raise));
         }
     }
+}
+
+/* Eliminates the first nodes; what is left of others is what they have to do with each other without these. */
+static void ldlt_eliminate(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                           float *v) {
     for (uint32_t j = 0; j < nodes; j++) {
         float *d = v + node[j].diagonal * TL_WIDTH;
         int several = node[j].blocks > 1u;
@@ -180,6 +184,12 @@ static void ldlt_factor(const tl_block_node *node, const tl_block *block, const 
             ldlt_hand_up(node, block, live, j, v);
         }
     }
+}
+
+static void ldlt_factor(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                        float *v) {
+    ldlt_raise(node, live, nodes, v);
+    ldlt_eliminate(node, block, live, nodes, v);
 }
 
 /* x becomes L^-1 x for a node, and y of another less what that is to it by the block l. */
@@ -288,9 +298,9 @@ static void ldlt_pass_back(const float *l, const float *y, float *x, uint32_t ro
     }
 }
 
-/* The nodes' right-hand sides become the solution. */
-static void ldlt_solve(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
-                       float *v) {
+/* From the first nodes' right-hand sides to what is left of those of others, and from the others' solution back. */
+static void ldlt_forward_pass(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                              float *v) {
     for (uint32_t j = 0; j < nodes; j++) {
         float *x = v + node[j].x * TL_WIDTH;
         ldlt_forward(v + node[j].diagonal * TL_WIDTH, x, live[j]);
@@ -300,6 +310,10 @@ static void ldlt_solve(const tl_block_node *node, const tl_block *block, const u
                       node[j].rows);
         }
     }
+}
+
+static void ldlt_back_pass(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                           float *v) {
     for (uint32_t j = nodes; j-- > 0;) {
         const float *d = v + node[j].diagonal * TL_WIDTH;
         float *x = v + node[j].x * TL_WIDTH;
@@ -313,4 +327,11 @@ static void ldlt_solve(const tl_block_node *node, const tl_block *block, const u
         }
         ldlt_back(d, x, live[j]);
     }
+}
+
+/* The nodes' right-hand sides become the solution. */
+static void ldlt_solve(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                       float *v) {
+    ldlt_forward_pass(node, block, live, nodes, v);
+    ldlt_back_pass(node, block, live, nodes, v);
 }

@@ -22,6 +22,8 @@ typedef struct tl_step {
     int stiff;       /* some body's moment of inertia counts as larger than it is */
     int again;       /* only what was far from its place is looked at */
     int before_move; /* impulses are those before the bodies move */
+    int skip_exact;  /* what is exact has been solved in this sub-step or will be in the next */
+    int deferred;    /* of what is exact: this sub-step's impulses hold those of the last one's pass after its move */
 } tl_step;
 
 typedef void (*tl_kernel)(const tl_step *step, uint32_t first, uint32_t last);
@@ -31,7 +33,7 @@ typedef struct tl_kernels {
     void (*collide_balls)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
     void (*collide_capsules)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
     void (*collide_boxes)(const tl_step *step, const tl_pair_batch *batch, tl_box_manifolds *out);
-    tl_kernel velocity, position, push; /* ranges of eight body rows */
+    tl_kernel velocity, position, fly, push; /* ranges of eight body rows */
     tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, strike_contacts,
         store_contacts;                                                                         /* groups */
     tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */
@@ -41,6 +43,9 @@ typedef struct tl_kernels {
 
 /* Solves for the x of one linkage's joints in single floats. */
 void tl_linkage_solve_one(const tl_header *h, const tl_linkage *l);
+/* Factors and solves, in single floats, what is left of the joints at the cuts of a linkage. */
+void tl_cuts_factor(const tl_header *h, const tl_linkage *l);
+void tl_cuts_solve(const tl_header *h, const tl_linkage *l);
 
 extern const tl_kernels tl_kernels_scalar;
 #if defined(__SSE2__)

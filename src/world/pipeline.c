@@ -30,7 +30,8 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->inverse_sub = 1.0f / step->sub;
     step->warm_scale = h->settings.substep > 0.0f ? step->sub / h->settings.substep : 1.0f;
     step->rows = 0;
-    step->any_locks = step->before_move = step->stiff = step->again = step->pushes = 0;
+    step->any_locks = step->skip_exact = step->deferred = step->before_move = step->stiff = step->again = 0;
+    step->pushes = 0;
     h->settings.substep = step->sub;
     set_softness(step);
     tl_events_begin(h);
@@ -95,9 +96,10 @@ static void push_back(tl_step *step, const tl_kernels *k) {
     step->again = 0;
 }
 
-static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch *w) {
+static void run_substep(tl_step *step, const tl_kernels *k, uint32_t i, tl_watch *w) {
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
+    int first = i == 0, last = i + 1u == h->settings.substeps;
     if (first) {
         tl_stage_stiffness(step);
         k->warm_contacts(step, 0, contacts);
@@ -116,7 +118,8 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
         step->before_move = 0;
         tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
     }
-    for (uint32_t i = 0; i < passes; i++) {
+    for (uint32_t pass = 0; pass < passes; pass++) {
+        step->skip_exact = pass > 0;
         k->solve_joints(step, 0, joints);
         step->before_move = 1;
         run_linked_velocities(step, k);
@@ -137,11 +140,14 @@ static void run_substep(tl_step *step, const tl_kernels *k, int first, tl_watch 
         strike(step, k);
         tl_watch_lap(w, TALUS_STAGE_RESTITUTION);
     }
-    for (uint32_t i = 0; i < passes; i++) {
+    for (uint32_t pass = 0; pass < passes; pass++) {
+        step->skip_exact = pass > 0 || !last;
+        step->deferred = !first;
         k->relax_joints(step, 0, joints);
         run_linked_velocities(step, k);
         k->relax_contacts(step, 0, contacts);
     }
+    step->deferred = 0;
     if (step->any_locks) {
         tl_stage_locks(step);
     }
@@ -167,8 +173,13 @@ static void solve(tl_step *step, tl_watch *w) {
     h->counters.groups_pushed = pushed;
     h->counters.groups_bouncing = bouncing;
     tl_watch_lap(w, TALUS_STAGE_ROWS);
-    for (uint32_t i = 0; i < h->settings.substeps; i++) {
-        run_substep(step, k, i == 0, w);
+    if (h->groups || h->joint_groups || step->any_locks) {
+        for (uint32_t i = 0; i < h->settings.substeps; i++) {
+            run_substep(step, k, i, w);
+        }
+    } else {
+        k->fly(step, 0, step->rows);
+        tl_watch_lap(w, TALUS_STAGE_POSITION);
     }
     h->counters.restitution_skipped = !bouncing;
     h->counters.rolling_skipped = !rolling;

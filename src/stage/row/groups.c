@@ -1,6 +1,7 @@
 /* Groups: constraints that may be solved side by side, eight at a time. Within a colour no two share a moving body, so
  * the lanes of a group write to different rows. What found no colour is packed as it comes, as long as nothing is
  * shared. */
+#include <stddef.h>
 #include <string.h>
 
 #include "stage/row/groups.h"
@@ -12,18 +13,23 @@ static uint32_t contact_key(const tl_contact_meta *m) { return m->color * 4u + (
 
 /* Sorts the touching contacts by key into contact_order; counting sort. Returns their number. */
 static uint32_t order_contacts(tl_header *h) {
-    uint32_t start[KEYS + 1u], total = 0;
+    uint32_t start[KEYS + 1u], total = 0, most = 0;
     const tl_contact_meta *metas = tl_contacts(h);
     const uint32_t *awake = tl_awake_contact(h);
+    if (h->awake_contacts == 0) {
+        return 0;
+    }
     memset(start, 0, sizeof start);
     for (uint32_t k = 0; k < h->awake_contacts; k++) {
         const tl_contact_meta *m = &metas[awake[k]];
         if (m->flags & TL_CONTACT_COLORED) {
-            start[contact_key(m)]++;
+            uint32_t key = contact_key(m);
+            start[key]++;
+            most = key > most ? key : most;
             h->counters.contact_points += m->count;
         }
     }
-    for (uint32_t i = 0; i < KEYS; i++) {
+    for (uint32_t i = 0; i <= most; i++) {
         uint32_t n = start[i];
         start[i] = total;
         total += n;
@@ -106,17 +112,26 @@ int tl_joints_alike(const tl_joint_record *a, const tl_joint_record *b) {
            memcmp(a->code, b->code, sizeof a->code) == 0;
 }
 
-tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j) {
+/* Passes over one joint at a time need impulses that turn with the bodies, and so rows that do. */
+static uint32_t needs_of(const tl_joint_record *j, uint32_t direct) {
+    uint32_t needs = direct && j->fixed >= 3u ? (uint32_t)TL_JOINT_POINT : 0u;
+    for (uint32_t r = 0; r < 3u && r < j->rows; r++) {
+        needs = j->code[r] == TL_ROW_LINEAR + r + TL_ROW_TYPES * TL_ROW_EQUAL ? needs : 0u;
+    }
+    return j->rows > (needs ? 3u : 0u) ? needs | TL_JOINT_AXES : needs;
+}
+
+tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint32_t direct) {
     if (h->joint_groups >= h->capacity[TL_COUNT_JOINTGROUP] ||
         h->joint_rows + j->rows > h->capacity[TL_COUNT_JOINTROW]) {
         return NULL;
     }
     tl_joint_group *g = &tl_joint_group_pool(h)[h->joint_groups++];
-    memset(g, 0, sizeof *g);
+    memset(g, 0, offsetof(tl_joint_group, k));
     for (uint32_t k = 0; k < TL_LANES; k++) {
         g->qa[3][k] = g->qb[3][k] = 1.0f;
     }
-    g->rows = j->rows, g->fixed = j->fixed;
+    g->rows = j->rows, g->fixed = j->fixed, g->exact = direct, g->needs = needs_of(j, direct);
     g->first_row = h->joint_rows;
     g->free_axis = j->free_axis == TL_NONE ? 0u : j->free_axis;
     memcpy(g->code, j->code, sizeof g->code);
@@ -125,7 +140,9 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j) {
             g->active[r][k] = 1.0f;
         }
     }
-    memset(tl_joint_row_pool(h) + g->first_row, 0, j->rows * sizeof(tl_joint_row));
+    for (uint32_t r = 0; r < j->rows; r++) {
+        memset(tl_joint_row_pool(h)[g->first_row + r].lower, 0, sizeof(tl_joint_row) - offsetof(tl_joint_row, lower));
+    }
     h->joint_rows += j->rows;
     return g;
 }
@@ -172,6 +189,11 @@ void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint) 
         rows[r].speed[k] = p->speed, rows[r].most[k] = p->most, rows[r].per_mass[k] = p->per_mass;
         rows[r].impulse[k] = s->impulse[r] * step->warm_scale;
     }
+    if (g->needs & TL_JOINT_POINT) {
+        talus_quat frame = tl_quat_mul(tl_row_quat(&tl_row_pose(h)[g->a[k]]), a.rotation);
+        talus_vec3 impulse = tl_rotate(frame, tl_v(rows[0].impulse[k], rows[1].impulse[k], rows[2].impulse[k]));
+        rows[0].impulse[k] = impulse.x, rows[1].impulse[k] = impulse.y, rows[2].impulse[k] = impulse.z;
+    }
     if (g->linked) {
         g->give[0][k] = give_of(h, j->body_a, j->place_a.position);
         g->give[1][k] = give_of(h, j->body_b, j->place_b.position);
@@ -190,6 +212,9 @@ static uint32_t order_joints(tl_header *h) {
     uint32_t start[TL_COLORS + 2u], total = 0;
     const uint32_t *awake = tl_awake_joint(h);
     uint32_t *order = tl_joint_order(h);
+    if (h->awake_joints == 0) {
+        return 0;
+    }
     memset(start, 0, sizeof start);
     for (uint32_t k = 0; k < h->awake_joints; k++) {
         start[tl_joints(h)[awake[k]].color]++;
@@ -206,14 +231,15 @@ static uint32_t order_joints(tl_header *h) {
 }
 
 /* The open group of a joint's kind in its colour that still has a free lane. */
-static tl_joint_group *find_group(tl_header *h, uint32_t first, uint32_t joint, int linked) {
+static tl_joint_group *find_group(tl_header *h, uint32_t first, uint32_t joint, int linked, uint32_t direct) {
     const tl_joint_record *joints = tl_joints(h), *j = &joints[joint];
     const uint32_t *rows = tl_body_row(h);
     for (uint32_t i = h->joint_groups; i-- > first;) {
         tl_joint_group *g = &tl_joint_group_pool(h)[i];
         int shared = j->color == TL_COLORS && (holds_row(g->a, g->b, g->lanes, rows[j->body_a]) ||
                                                holds_row(g->a, g->b, g->lanes, rows[j->body_b]));
-        if (g->lanes < TL_LANES && !shared && (g->linked > 0) == linked && tl_joints_alike(&joints[g->joint[0]], j)) {
+        if (g->lanes < TL_LANES && !shared && (g->linked > 0) == linked && g->exact == direct &&
+            tl_joints_alike(&joints[g->joint[0]], j)) {
             return g;
         }
         if (j->color == TL_COLORS || h->joint_groups - i > 16u) { /* looking far back costs more than a lane */
@@ -238,20 +264,23 @@ void tl_stage_joint_groups(tl_step *step) {
         if (j->rows == 0 || place == TL_LINKAGE_READY) {
             continue;
         }
-        tl_joint_group *g = find_group(h, first, joint, place != TL_LINKAGE_NONE);
+        int linked = place != TL_LINKAGE_NONE && place != TL_LINKAGE_ALONE;
+        uint32_t direct = place != TL_LINKAGE_NONE;
+        tl_joint_group *g = find_group(h, first, joint, linked, direct);
         if (!g) {
-            g = tl_joint_group_open(h, j);
+            g = tl_joint_group_open(h, j, direct);
         }
         if (!g) {
             dropped++;
             continue;
         }
-        if (place != TL_LINKAGE_NONE) {
+        if (linked) {
             g->linked = tl_linked_rows(j);
             tl_linkage_places(h)[place] = (uint32_t)(g - tl_joint_group_pool(h)) * TL_LANES + g->lanes;
         }
         tl_joint_group_add(step, g, joint);
     }
+    tl_linkages_note_exact(h);
     h->counters.joints_solved = count - dropped;
     h->counters.joints_sleeping = h->joints.used - h->awake_joints;
     h->counters.rows.dropped += dropped;

@@ -10,6 +10,7 @@
 
 typedef struct joint_bodies {
     v8 xa, xb;
+    q8 qa, qb;
     k8 ka, kb;
     tl_f8 ma, mb, ta, tb;
     v8 curve;      /* m/s: of anchor b against anchor a */
@@ -31,21 +32,49 @@ static inline v8 bend(v8 w, v8 r, tl_f8 h) {
     return v8_scale(v8_cross(w, v8_cross(w, r)), trust);
 }
 
+static inline k8 k8_load(const float k[9][TL_LANES]) {
+    k8 r = {v8_load(k[0]), v8_load(k[3]), v8_load(k[6])};
+    return r;
+}
+
+/* K stays as it is for a step. */
+static void keep_frames(const tl_step *step, tl_joint_group *g) {
+    const float *frames = tl_row_frame(step->h)->f;
+    tl_f8 r[8];
+    for (uint32_t side = 0; side < 2u; side++) {
+        tl_f8_load_rows(frames, side ? g->b : g->a, r);
+        k8 k = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
+        v8_store(g->k[side][0], k.x);
+        v8_store(g->k[side][3], k.y);
+        v8_store(g->k[side][6], k.z);
+    }
+}
+
+static void load_joint_frames(const tl_joint_group *g, joint_bodies *c) {
+    q8 fa =
+        q8_mul(c->qa, q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3])));
+    axes_of(fa, c->a);
+    q8 fb =
+        q8_mul(c->qb, q8_of(tl_f8_load(g->qb[0]), tl_f8_load(g->qb[1]), tl_f8_load(g->qb[2]), tl_f8_load(g->qb[3])));
+    axes_of(fb, c->b);
+    q8 t = q8_mul(q8_conjugate(fa), fb);
+    tl_m8 flip = tl_f8_lt(t.w, tl_f8_zero());
+    c->turn = q8_of(tl_f8_select(flip, tl_f8_neg(t.x), t.x), tl_f8_select(flip, tl_f8_neg(t.y), t.y),
+                    tl_f8_select(flip, tl_f8_neg(t.z), t.z), tl_f8_select(flip, tl_f8_neg(t.w), t.w));
+}
+
 static void load_joint_bodies(const tl_step *step, const tl_joint_group *g, joint_bodies *c) {
     tl_f8 r[8];
-    const float *poses = tl_row_pose(step->h)->f, *frames = tl_row_frame(step->h)->f;
-    const float *velocities = tl_row_velocity(step->h)->f;
+    const float *poses = tl_row_pose(step->h)->f, *velocities = tl_row_velocity(step->h)->f;
     tl_f8_load_rows(poses, g->a, r);
-    q8 qa = q8_of(r[3], r[4], r[5], r[6]);
+    c->qa = q8_of(r[3], r[4], r[5], r[6]);
     c->xa = v8_of(r[0], r[1], r[2]);
     tl_f8_load_rows(poses, g->b, r);
-    q8 qb = q8_of(r[3], r[4], r[5], r[6]);
+    c->qb = q8_of(r[3], r[4], r[5], r[6]);
     c->xb = v8_of(r[0], r[1], r[2]);
-    tl_f8_load_rows(frames, g->a, r);
-    c->ka = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
-    tl_f8_load_rows(frames, g->b, r);
-    c->kb = k8_of(q8_of(r[0], r[1], r[2], r[3]), v8_of(r[4], r[5], r[6]));
-    v8 ra = q8_rotate(qa, v8_load(g->pa[0])), rb = q8_rotate(qb, v8_load(g->pb[0]));
+    c->ka = k8_load(g->k[0]);
+    c->kb = k8_load(g->k[1]);
+    v8 ra = q8_rotate(c->qa, v8_load(g->pa[0])), rb = q8_rotate(c->qb, v8_load(g->pb[0]));
     c->pa = v8_add(c->xa, ra);
     c->pb = v8_add(c->xb, rb);
     tl_f8_load_rows(velocities, g->a, r);
@@ -56,14 +85,6 @@ static void load_joint_bodies(const tl_step *step, const tl_joint_group *g, join
     c->mb = r[6], c->tb = r[7];
     tl_f8 h = tl_f8_set1(step->sub);
     c->curve = v8_scale(v8_sub(bend(wb, rb, h), bend(wa, ra, h)), tl_f8_mul(tl_f8_set1(0.5f), h));
-    q8 fa = q8_mul(qa, q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3])));
-    q8 fb = q8_mul(qb, q8_of(tl_f8_load(g->qb[0]), tl_f8_load(g->qb[1]), tl_f8_load(g->qb[2]), tl_f8_load(g->qb[3])));
-    axes_of(fa, c->a);
-    axes_of(fb, c->b);
-    q8 t = q8_mul(q8_conjugate(fa), fb);
-    tl_m8 flip = tl_f8_lt(t.w, tl_f8_zero());
-    c->turn = q8_of(tl_f8_select(flip, tl_f8_neg(t.x), t.x), tl_f8_select(flip, tl_f8_neg(t.y), t.y),
-                    tl_f8_select(flip, tl_f8_neg(t.z), t.z), tl_f8_select(flip, tl_f8_neg(t.w), t.w));
 }
 
 static inline int is_linear_row(uint32_t code) {
@@ -98,10 +119,38 @@ static void angular_row(const joint_bodies *c, uint32_t type, uint32_t free_axis
     }
 }
 
+/* K (r x e) of a world axis e. */
+TL_INLINE v8 k8_arm(const k8 *k, v8 r, uint32_t axis) {
+    const v8 *row[3] = {&k->x, &k->y, &k->z};
+    tl_f8 j[3];
+    for (uint32_t m = 0; m < 3u; m++) {
+        tl_f8 x = row[m]->x, y = row[m]->y, z = row[m]->z;
+        j[m] = axis == 0   ? tl_f8_sub(tl_f8_mul(y, r.z), tl_f8_mul(z, r.y))
+               : axis == 1 ? tl_f8_sub(tl_f8_mul(z, r.x), tl_f8_mul(x, r.z))
+                           : tl_f8_sub(tl_f8_mul(x, r.y), tl_f8_mul(y, r.x));
+    }
+    return v8_of(j[0], j[1], j[2]);
+}
+
+/* The three rows of a point that is held. */
+TL_INLINE void make_point_rows(const joint_bodies *c, tl_joint_row *rows) {
+    v8 d = v8_sub(c->pb, c->pa), ra = v8_sub(c->pb, c->xa), rb = v8_sub(c->pb, c->xb);
+    const tl_f8 errors[3] = {d.x, d.y, d.z}, curves[3] = {c->curve.x, c->curve.y, c->curve.z};
+    for (uint32_t k = 0; k < 3u; k++) {
+        for (uint32_t m = 0; m < 3u; m++) {
+            tl_f8_store(rows[k].n[m], tl_f8_set1(k == m ? 1.0f : 0.0f));
+        }
+        v8_store(rows[k].ja[0], k8_arm(&c->ka, ra, k));
+        v8_store(rows[k].jb[0], k8_arm(&c->kb, rb, k));
+        tl_f8_store(rows[k].error, errors[k]);
+        tl_f8_store(rows[k].curve, curves[k]);
+    }
+}
+
 static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t code, uint32_t free_axis) {
     uint32_t type = code % TL_ROW_TYPES;
     v8 d = v8_sub(c->pb, c->pa), n, ja, jb;
-    tl_f8 error, mass, curve = tl_f8_zero();
+    tl_f8 error, mass = tl_f8_zero(), curve = tl_f8_zero();
     if (is_linear_row(code)) {
         if (type == TL_ROW_DISTANCE) {
             error = tl_f8_sqrt(v8_dot(d, d));
@@ -119,48 +168,57 @@ static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t co
         angular_row(c, type, free_axis, &n, &error);
         ja = k8_mul(&c->ka, n);
         jb = k8_mul(&c->kb, n);
-        mass = tl_f8_zero();
     }
-    mass = tl_f8_add(mass, tl_f8_add(tl_f8_mul(c->ta, v8_dot(ja, ja)), tl_f8_mul(c->tb, v8_dot(jb, jb))));
     v8_store(row->n[0], n);
     v8_store(row->ja[0], ja);
     v8_store(row->jb[0], jb);
     tl_f8_store(row->error, error);
     tl_f8_store(row->curve, curve);
-    tl_f8_store(row->mass, inverse_or_zero(mass));
-    tl_f8 below = tl_f8_sub(error, tl_f8_load(row->lower)), above = tl_f8_sub(tl_f8_load(row->upper), error);
-    tl_f8_store(row->at_lower, tl_f8_and_mask(tl_f8_le(below, above), tl_f8_set1(1.0f)));
+    if (code / TL_ROW_TYPES != TL_ROW_EQUAL) {
+        mass = tl_f8_add(mass, tl_f8_add(tl_f8_mul(c->ta, v8_dot(ja, ja)), tl_f8_mul(c->tb, v8_dot(jb, jb))));
+        tl_f8_store(row->mass, inverse_or_zero(mass));
+        tl_f8 below = tl_f8_sub(error, tl_f8_load(row->lower)), above = tl_f8_sub(tl_f8_load(row->upper), error);
+        tl_f8_store(row->at_lower, tl_f8_and_mask(tl_f8_le(below, above), tl_f8_set1(1.0f)));
+    }
 }
 
 /* A pivot below this share of its diagonal entry stands for rows that say the same thing twice. */
 #define LEAST_PIVOT 1e-6f
 
-/* The matrix of rows i and j of a joint. */
-static inline tl_f8 joint_coupling(const joint_bodies *c, const tl_joint_group *g, const tl_joint_row *rows, uint32_t i,
-                                   uint32_t j) {
-    tl_f8 k = tl_f8_add(tl_f8_mul(c->ta, v8_dot(v8_load(rows[i].ja[0]), v8_load(rows[j].ja[0]))),
-                        tl_f8_mul(c->tb, v8_dot(v8_load(rows[i].jb[0]), v8_load(rows[j].jb[0]))));
-    if (is_linear_row(g->code[i]) && is_linear_row(g->code[j])) {
-        tl_f8 linear = tl_f8_add(c->ma, c->mb);
-        k = tl_f8_add(k, tl_f8_mul(linear, v8_dot(v8_load(rows[i].n[0]), v8_load(rows[j].n[0]))));
+/* The first i + 1 entries of row i of a joint's matrix. */
+TL_INLINE void matrix_row(const joint_bodies *c, const tl_joint_group *g, const tl_joint_row *rows, uint32_t i,
+                          tl_f8 *out) {
+    v8 ja = v8_scale(v8_load(rows[i].ja[0]), c->ta), jb = v8_scale(v8_load(rows[i].jb[0]), c->tb);
+    tl_f8 linear = tl_f8_add(c->ma, c->mb);
+    int is_linear = is_linear_row(g->code[i]), is_point = (g->needs & TL_JOINT_POINT) && i < 3u;
+    for (uint32_t j = 0; j <= i; j++) {
+        out[j] = tl_f8_add(v8_dot(ja, v8_load(rows[j].ja[0])), v8_dot(jb, v8_load(rows[j].jb[0])));
+        if (is_point) {
+            out[j] = i == j ? tl_f8_add(out[j], linear) : out[j];
+        } else if (is_linear && is_linear_row(g->code[j])) {
+            out[j] = tl_f8_mad(out[j], linear, v8_dot(v8_load(rows[i].n[0]), v8_load(rows[j].n[0])));
+        }
     }
-    return k;
 }
 
 static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
     for (uint32_t i = 0; i < g->linked; i++) {
+        tl_f8 row[6];
+        matrix_row(c, g, rows, i, row);
         for (uint32_t j = 0; j <= i; j++) {
-            tl_f8_store(g->matrix[i * (i + 1u) / 2u + j], joint_coupling(c, g, rows, i, j));
+            tl_f8_store(g->matrix[i * (i + 1u) / 2u + j], row[j]);
         }
     }
 }
 
 /* L D L^T of the equalities' matrix, row by row; the diagonal holds 1 / D (Golub and Van Loan, 4.1.2). */
-static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
+TL_INLINE void factor_equalities_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t n) {
     tl_f8 l[21], d[6];
-    for (uint32_t i = 0; i < g->fixed; i++) {
+    for (uint32_t i = 0; i < n; i++) {
+        tl_f8 row[6];
+        matrix_row(c, g, rows, i, row);
         for (uint32_t j = 0; j <= i; j++) {
-            tl_f8 k = joint_coupling(c, g, rows, i, j), whole = k;
+            tl_f8 k = row[j], whole = k;
             for (uint32_t m = 0; m < j; m++) { /* l[i][m] holds L D until the row is done */
                 tl_f8 other = j == i ? tl_f8_mul(l[i * (i + 1u) / 2u + m], d[m]) : l[j * (j + 1u) / 2u + m];
                 k = tl_f8_sub(k, tl_f8_mul(l[i * (i + 1u) / 2u + m], other));
@@ -177,8 +235,22 @@ static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl
             }
         }
     }
-    for (uint32_t i = 0; i < g->fixed * (g->fixed + 1u) / 2u; i++) {
+    for (uint32_t i = 0; i < n * (n + 1u) / 2u; i++) {
         tl_f8_store(g->matrix[i], l[i]);
+    }
+}
+
+/* The usual numbers are compiled on their own. */
+static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
+    switch (g->fixed) {
+    case 3:
+        factor_equalities_of(c, g, rows, 3u);
+        break;
+    case 5:
+        factor_equalities_of(c, g, rows, 5u);
+        break;
+    default:
+        factor_equalities_of(c, g, rows, g->fixed);
     }
 }
 
@@ -186,8 +258,14 @@ static void make_joint_rows(const tl_step *step, tl_joint_group *g) {
     tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
     joint_bodies c;
     load_joint_bodies(step, g, &c);
-    for (uint32_t k = 0; k < g->rows; k++) {
-        make_joint_row(&c, &rows[k], g->code[k], g->free_axis);
+    if (g->needs & TL_JOINT_POINT) {
+        make_point_rows(&c, rows);
+    }
+    if (g->needs & TL_JOINT_AXES) {
+        load_joint_frames(g, &c);
+        for (uint32_t k = g->needs & TL_JOINT_POINT ? 3u : 0u; k < g->rows; k++) {
+            make_joint_row(&c, &rows[k], g->code[k], g->free_axis);
+        }
     }
     tl_f8_store(g->turns[0], c.ta);
     tl_f8_store(g->turns[1], c.tb);
@@ -216,6 +294,13 @@ static void store_joints(const tl_step *step, uint32_t first, uint32_t last) {
                 for (uint32_t k = 0; k < 3u; k++) {
                     sum[k] += rows[r].n[k][lane] * strength;
                 }
+            }
+            if (g->needs & TL_JOINT_POINT) {
+                talus_quat own = {g->qa[0][lane], g->qa[1][lane], g->qa[2][lane], g->qa[3][lane]};
+                talus_quat frame = tl_quat_mul(tl_row_quat(&tl_row_pose(step->h)[g->a[lane]]), own);
+                talus_vec3 impulse = tl_rotate_back(frame, tl_v(s->impulse[0], s->impulse[1], s->impulse[2]));
+                impulse = tl_is_finite3(impulse) ? impulse : tl_v(0.0f, 0.0f, 0.0f);
+                s->impulse[0] = impulse.x, s->impulse[1] = impulse.y, s->impulse[2] = impulse.z;
             }
             for (uint32_t k = 0; k < 3u; k++) {
                 s->force[k] = tl_is_finite(s->force[k]) ? s->force[k] : 0.0f;

@@ -28,19 +28,25 @@ static uint32_t free_row(const tl_header *h, uint32_t body) {
 }
 
 /* The joints that hang together with `joint`, into linkage_order from `first` on; linkage_rows numbers their bodies
- * from 1. Returns how many joints there are. */
-static uint32_t gather(tl_header *h, uint32_t joint, uint32_t first, uint32_t *ends) {
+ * from 1. Returns how many joints there are. They are exact where their bodies are held by nothing else, no contact, no
+ * limit, no drive, no lock: then the impulses that the pass after the move would find are among those that the next
+ * sub-step finds, as both act along the same rows. */
+static uint32_t gather(tl_header *h, uint32_t joint, uint32_t first, uint32_t *ends, uint32_t *exact) {
     const tl_joint_record *joints = tl_joints(h);
     uint32_t *of = tl_linkage_of(h), *number = tl_linkage_rows(h), *queue = tl_linkage_queue(h);
     uint32_t *order = tl_linkage_order(h) + first, count = 0, head = 0, tail = 0;
     uint32_t row = free_row(h, joints[joint].body_a);
     queue[tail++] = row ? row : free_row(h, joints[joint].body_b);
     number[queue[0]] = 1u;
+    *exact = 1u;
     while (head < tail) {
+        const tl_row8 *moved = &tl_row_moved(h)[queue[head]];
         uint32_t body = tl_awake_body(h)[queue[head++] - 1u];
+        *exact &= moved->f[7] == 0.0f && moved->f[6] == 0.0f;
         for (uint32_t link = tl_bodies(h)[body].first_joint; link != TL_NONE;) {
             const tl_joint_record *j = &joints[link / 2u];
             uint32_t other = free_row(h, link & 1u ? j->body_a : j->body_b);
+            *exact &= j->rows == j->fixed;
             if (j->fixed > 0 && of[link / 2u] == TL_LINKAGE_NONE) {
                 of[link / 2u] = TL_LINKAGE_READY;
                 order[count++] = link / 2u;
@@ -84,7 +90,7 @@ typedef struct finder {
     uint32_t shapes, nodes, blocks, linkages, joints, values, places;
 } finder;
 
-/* The structure of the joints from `first` on; without values where it would be too full. */
+/* The structure of the joints from `first` on. */
 static uint32_t shape_of(finder *f, uint32_t first, uint32_t count, uint32_t ends) {
     tl_header *h = f->h;
     tl_linkage_shape *shapes = tl_linkage_shapes(h);
@@ -102,16 +108,22 @@ static uint32_t shape_of(finder *f, uint32_t first, uint32_t count, uint32_t end
         nodes[k].end[0] = end_of(h, j->body_a), nodes[k].end[1] = end_of(h, j->body_b);
         nodes[k].rows = tl_linked_rows(j);
     }
-    uint32_t room = count * TL_LINK_BLOCKS;
-    uint32_t used =
-        tl_block_plan(nodes, count, ends, tl_linkage_blocks(h), f->blocks, room, tl_linkage_scratch(h), &s->values);
+    f->nodes += count;
+    return f->shapes++;
+}
+
+/* The factor of a shape, when first a linkage asks for it; none where it would be too full. */
+static void plan_shape(finder *f, tl_linkage_shape *s) {
+    tl_header *h = f->h;
+    uint32_t room = h->capacity[TL_COUNT_LINKBLOCK] - f->blocks, most = s->nodes * TL_LINK_BLOCKS;
+    uint32_t used = tl_block_plan(tl_linkage_nodes(h) + s->first_node, s->nodes, s->ends, tl_linkage_blocks(h),
+                                  f->blocks, most < room ? most : room, tl_linkage_scratch(h), &s->values);
+    s->planned = 1;
     if (used == TL_BLOCK_FREE) {
         s->values = 0;
     } else {
         f->blocks += used;
     }
-    f->nodes += count;
-    return f->shapes++;
 }
 
 /* The joints from `first` on are solved one by one, being of no linkage or of one left apart. */
@@ -178,8 +190,9 @@ static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
         float reach = 0.0f;
         reach += free_row(h, j->body_a) ? tl_body_inertias(h)[j->body_a].reach : 0.0f;
         reach += free_row(h, j->body_b) ? tl_body_inertias(h)[j->body_b].reach : 0.0f;
-        float spin = tl_max(tl_length(tl_row_345(a)), tl_length(tl_row_345(b)));
-        if (!(spin * step->sub < WILD_TURN) || !(error_of(h, j) < WILD_SHARE * reach)) {
+        talus_vec3 wa = tl_row_345(a), wb = tl_row_345(b);
+        float spin = tl_max(tl_dot(wa, wa), tl_dot(wb, wb)); /* squared */
+        if (!(spin * (step->sub * step->sub) < WILD_TURN * WILD_TURN) || !(error_of(h, j) < WILD_SHARE * reach)) {
             return 1;
         }
     }
@@ -206,18 +219,19 @@ static void find_components(const tl_step *step, finder *f) {
         if (of[awake[k]] != TL_LINKAGE_NONE || j->fixed == 0 || !(free_row(h, j->body_a) || free_row(h, j->body_b))) {
             continue;
         }
-        uint32_t ends, count = gather(h, awake[k], f->joints, &ends);
+        uint32_t ends, exact, count = gather(h, awake[k], f->joints, &ends, &exact);
         if (count > 1u && (is_easy(h, order + f->joints, count) || is_strung(h, order + f->joints, count) ||
                            is_wild(step, order + f->joints, count))) {
             leave(h, f->joints, count, TL_LINKAGE_APART); /* not to be gathered again from another joint */
         } else if (count > 1u) {
             uint32_t shape = shape_of(f, f->joints, count, ends);
             tl_linkage *l = &tl_linkages(h)[f->linkages++];
-            l->shape = shape, l->first_joint = f->joints, l->lanes = 1u;
+            memset(l, 0, sizeof *l);
+            l->shape = shape, l->first_joint = f->joints, l->lanes = 1u, l->exact = exact;
             tl_linkage_shapes(h)[shape].members++;
             f->joints += count;
         } else {
-            of[order[f->joints]] = TL_LINKAGE_NONE;
+            of[order[f->joints]] = exact ? TL_LINKAGE_ALONE : TL_LINKAGE_NONE;
         }
     }
 }
@@ -228,7 +242,7 @@ static int open_groups(finder *f, tl_linkage *l, const tl_linkage_shape *s) {
     uint32_t groups = h->joint_groups;
     for (uint32_t k = 0; k < s->nodes; k++) {
         const tl_joint_record *j = &tl_joints(h)[tl_linkage_order(h)[l->first_joint + s->nodes - 1u - k]];
-        tl_joint_group *g = tl_joint_group_open(h, j);
+        tl_joint_group *g = tl_joint_group_open(h, j, 1u);
         if (!g) {
             return 0;
         }
@@ -247,7 +261,10 @@ static void fill_groups(tl_step *step, const tl_linkage *l, const tl_linkage_sha
 }
 
 /* A place for a linkage's values and nodes; 0 if there is no room. */
-static int settle(finder *f, tl_linkage *l, const tl_linkage_shape *s, uint32_t width) {
+static int settle(finder *f, tl_linkage *l, tl_linkage_shape *s, uint32_t width) {
+    if (!s->planned) {
+        plan_shape(f, s);
+    }
     uint32_t values = (s->values * width + TL_LANES - 1u) / TL_LANES * TL_LANES;
     if (s->values == 0 || f->values + values > f->h->capacity[TL_COUNT_LINKVALUE]) {
         return 0;
@@ -262,6 +279,13 @@ static int settle(finder *f, tl_linkage *l, const tl_linkage_shape *s, uint32_t 
 static uint32_t wide_members(uint32_t members) {
     uint32_t rest = members % TL_LANES;
     return rest >= LEAST_WIDE ? members : members - rest;
+}
+
+static int cut(tl_step *step, finder *f, tl_linkage *l, const tl_linkage_shape *s) {
+    tl_linkage_room room = {f->nodes, f->blocks, f->values, f->places};
+    int done = tl_linkage_cut(step, l, s, &room);
+    f->nodes = room.nodes, f->blocks = room.blocks, f->values = room.values, f->places = room.places;
+    return done;
 }
 
 /* The linkages in their final places: what is alike goes side by side, the rest keeps its joints for the coloured
@@ -280,7 +304,12 @@ static void place_linkages(tl_step *step, finder *f) {
         if (s->wide > 0 && s->open != TL_NONE && linkages[s->open].lanes < TL_LANES) {
             s->wide--;
             linkages[s->open].lanes++;
+            linkages[s->open].exact &= l.exact;
             fill_groups(step, &linkages[s->open], s, l.first_joint);
+            continue;
+        }
+        if (s->wide == 0 && cut(step, f, &l, s)) {
+            linkages[kept++] = l;
             continue;
         }
         if (!settle(f, &l, s, s->wide > 0 ? TL_LANES : 1u) || (s->wide > 0 && !open_groups(f, &l, s))) {
@@ -321,7 +350,7 @@ void tl_linkages_find(tl_step *step) {
     for (uint32_t k = 0; k < h->awake_joints; k++) {
         tl_linkage_of(h)[tl_awake_joint(h)[k]] = TL_LINKAGE_NONE;
     }
-    if (h->awake_joints < 2u || !rows_suffice(h)) {
+    if (h->awake_joints == 0 || !rows_suffice(h)) {
         return;
     }
     memset(tl_linkage_rows(h), 0, step->rows * sizeof(uint32_t));
@@ -331,6 +360,20 @@ void tl_linkages_find(tl_step *step) {
         *of = *of == TL_LINKAGE_APART ? TL_LINKAGE_NONE : *of;
     }
     place_linkages(step, &f);
+}
+
+void tl_linkages_note_exact(tl_header *h) {
+    uint32_t shared = 1u;
+    for (uint32_t i = 0; i < h->linkages; i++) {
+        shared &= tl_linkages(h)[i].wide ? 1u : tl_linkages(h)[i].exact;
+    }
+    for (uint32_t i = 0; i < h->linkages; i++) {
+        tl_linkage *l = &tl_linkages(h)[i];
+        l->exact = l->wide ? l->exact : shared;
+        for (uint32_t k = 0; k < l->nodes && !l->exact; k++) {
+            tl_joint_group_pool(h)[tl_linkage_places(h)[l->first_place + k] / TL_LANES].exact = 0;
+        }
+    }
 }
 
 /* --- stiffness -------------------------------------------------------------------------------- */
@@ -385,6 +428,13 @@ static void set_far(const tl_header *h, const tl_linkage *l, uint32_t far) {
 
 int tl_stage_far_linkages(tl_header *h) {
     uint32_t any = 0, shared = 0;
+    for (uint32_t i = 0; i < h->joint_groups && h->linkages; i++) {
+        any |= tl_joint_group_pool(h)[i].linked ? tl_joint_group_pool(h)[i].far : 0u;
+    }
+    if (!any) {
+        return 0;
+    }
+    any = 0;
     for (uint32_t i = 0; i < h->linkages; i++) {
         tl_linkage *l = &tl_linkages(h)[i];
         l->far = far_of(h, l);

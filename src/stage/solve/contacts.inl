@@ -21,7 +21,7 @@ typedef struct pair_velocity {
     tl_f8 ma, ta, mb, tb;
 } pair_velocity;
 
-static inline void load_pair(const float *velocities, const uint32_t *a, const uint32_t *b, pair_velocity *p) {
+TL_INLINE void load_pair(const float *velocities, const uint32_t *a, const uint32_t *b, pair_velocity *p) {
     tl_f8 r[8];
     tl_f8_load_rows(velocities, a, r);
     p->va = v8_of(r[0], r[1], r[2]), p->ua = v8_of(r[3], r[4], r[5]), p->ma = r[6], p->ta = r[7];
@@ -29,7 +29,7 @@ static inline void load_pair(const float *velocities, const uint32_t *a, const u
     p->vb = v8_of(r[0], r[1], r[2]), p->ub = v8_of(r[3], r[4], r[5]), p->mb = r[6], p->tb = r[7];
 }
 
-static inline void store_pair(float *velocities, const uint32_t *a, const uint32_t *b, const pair_velocity *p) {
+TL_INLINE void store_pair(float *velocities, const uint32_t *a, const uint32_t *b, const pair_velocity *p) {
     const tl_f8 ra[8] = {p->va.x, p->va.y, p->va.z, p->ua.x, p->ua.y, p->ua.z, p->ma, p->ta};
     const tl_f8 rb[8] = {p->vb.x, p->vb.y, p->vb.z, p->ub.x, p->ub.y, p->ub.z, p->mb, p->tb};
     tl_f8_store_rows(velocities, a, ra);

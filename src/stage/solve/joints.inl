@@ -7,18 +7,55 @@
 /* The share of an error that a sub-step takes back. */
 #define JOINT_SHARE 0.5f
 
-static inline tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int linear) {
-    v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
-    return linear ? row_speed(p, v8_load(row->n[0]), ja, jb) : spin_speed(p, ja, jb);
+/* What a row is along: nothing but an angle, a direction, or an axis of the world, which is ROW_AXIS and its number. */
+enum { ROW_ANGULAR = 0, ROW_LINEAR = 1, ROW_AXIS = 2 };
+
+static inline int row_kind(const tl_joint_group *g, uint32_t k) {
+    if (k < 3u && (g->needs & TL_JOINT_POINT)) {
+        return ROW_AXIS + (int)k;
+    }
+    return is_linear_row(g->code[k]) ? ROW_LINEAR : ROW_ANGULAR;
 }
 
-static inline void joint_apply(pair_velocity *p, const tl_joint_row *row, int linear, tl_f8 impulse) {
+TL_INLINE tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int kind) {
     v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
-    if (linear) {
-        apply_row(p, v8_load(row->n[0]), ja, jb, impulse);
-    } else {
-        apply_spin(p, ja, jb, impulse);
+    if (kind == ROW_LINEAR) {
+        return row_speed(p, v8_load(row->n[0]), ja, jb);
     }
+    tl_f8 spin = spin_speed(p, ja, jb);
+    switch (kind) {
+    case ROW_AXIS:
+        return tl_f8_add(spin, tl_f8_sub(p->vb.x, p->va.x));
+    case ROW_AXIS + 1:
+        return tl_f8_add(spin, tl_f8_sub(p->vb.y, p->va.y));
+    case ROW_AXIS + 2:
+        return tl_f8_add(spin, tl_f8_sub(p->vb.z, p->va.z));
+    default:
+        return spin;
+    }
+}
+
+TL_INLINE void joint_apply(pair_velocity *p, const tl_joint_row *row, int kind, tl_f8 impulse) {
+    v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
+    tl_f8 a = tl_f8_mul(impulse, p->ma), b = tl_f8_mul(impulse, p->mb);
+    switch (kind) {
+    case ROW_LINEAR:
+        p->va = v8_msub(p->va, a, v8_load(row->n[0]));
+        p->vb = v8_mad(p->vb, b, v8_load(row->n[0]));
+        break;
+    case ROW_AXIS:
+        p->va.x = tl_f8_sub(p->va.x, a), p->vb.x = tl_f8_add(p->vb.x, b);
+        break;
+    case ROW_AXIS + 1:
+        p->va.y = tl_f8_sub(p->va.y, a), p->vb.y = tl_f8_add(p->vb.y, b);
+        break;
+    case ROW_AXIS + 2:
+        p->va.z = tl_f8_sub(p->va.z, a), p->vb.z = tl_f8_add(p->vb.z, b);
+        break;
+    default:
+        break;
+    }
+    apply_spin(p, ja, jb, impulse);
 }
 
 /* An implicit spring and damper, bounded in force: softness g = 1 / (h (c + h k)), speed it seeks (k e + c v) / (c + h
@@ -74,9 +111,8 @@ static void solve_range(const tl_step *step, pair_velocity *p, tl_joint_row *row
     joint_apply(p, row, linear, tl_f8_mul(sign, tl_f8_sub(now, old)));
 }
 
-/* x becomes the impulses that take the equalities' speeds -x to nothing. */
-static inline void solve_factored(const tl_joint_group *g, tl_f8 x[6]) {
-    uint32_t n = g->fixed;
+/* x becomes the impulses that take n equalities' speeds -x to nothing. */
+TL_INLINE void solve_factored(const tl_joint_group *g, tl_f8 x[6], uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
         for (uint32_t j = 0; j < i; j++) {
             x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->matrix[i * (i + 1u) / 2u + j]), x[j]));
@@ -90,16 +126,66 @@ static inline void solve_factored(const tl_joint_group *g, tl_f8 x[6]) {
     }
 }
 
-static void solve_equalities(const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p, int before_move) {
+/* Whether a group is to be passed over, for one solve of its velocities in a sub-step is all it takes. */
+static inline int is_exact(const tl_step *step, const tl_joint_group *g) { return step->skip_exact && g->exact; }
+/* Whether what is found now stands in the impulses already, as that which the sub-step before left to this one. */
+static inline int counts_for_last(const tl_step *step, const tl_joint_group *g) { return step->deferred && g->exact; }
+
+TL_INLINE void solve_equalities_of(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
+                                   int before_move, uint32_t n) {
     tl_f8 x[6];
-    for (uint32_t i = 0; i < g->fixed; i++) {
-        tl_f8 speed = joint_speed(p, &rows[i], is_linear_row(g->code[i]));
+    int keep = !counts_for_last(step, g);
+    for (uint32_t i = 0; i < n; i++) {
+        tl_f8 speed = joint_speed(p, &rows[i], row_kind(g, i));
         x[i] = tl_f8_neg(before_move ? tl_f8_add(speed, tl_f8_load(rows[i].curve)) : speed);
     }
-    solve_factored(g, x);
-    for (uint32_t i = 0; i < g->fixed; i++) {
-        tl_f8_store(rows[i].impulse, tl_f8_add(tl_f8_load(rows[i].impulse), x[i]));
-        joint_apply(p, &rows[i], is_linear_row(g->code[i]), x[i]);
+    solve_factored(g, x, n);
+    for (uint32_t i = 0; i < n; i++) {
+        if (keep) {
+            tl_f8_store(rows[i].impulse, tl_f8_add(tl_f8_load(rows[i].impulse), x[i]));
+        }
+        joint_apply(p, &rows[i], row_kind(g, i), x[i]);
+    }
+}
+
+/* The usual numbers are compiled on their own. */
+static void solve_equalities(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
+                             int before_move) {
+    switch (g->fixed) {
+    case 3:
+        solve_equalities_of(step, g, rows, p, before_move, 3u);
+        break;
+    case 5:
+        solve_equalities_of(step, g, rows, p, before_move, 5u);
+        break;
+    default:
+        solve_equalities_of(step, g, rows, p, before_move, g->fixed);
+    }
+}
+
+TL_INLINE void push_equalities_of(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, uint32_t n) {
+    tl_f8 x[6], share = tl_f8_set1(JOINT_SHARE);
+    for (uint32_t k = 0; k < n; k++) {
+        tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
+        error = tl_f8_add(error, joint_speed(p, &rows[k], row_kind(g, k)));
+        x[k] = tl_f8_neg(tl_f8_mul(share, error));
+    }
+    solve_factored(g, x, n);
+    for (uint32_t k = 0; k < n; k++) {
+        joint_apply(p, &rows[k], row_kind(g, k), x[k]);
+    }
+}
+
+static void push_equalities(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p) {
+    switch (g->fixed) {
+    case 3:
+        push_equalities_of(g, rows, p, 3u);
+        break;
+    case 5:
+        push_equalities_of(g, rows, p, 5u);
+        break;
+    default:
+        push_equalities_of(g, rows, p, g->fixed);
     }
 }
 
@@ -111,7 +197,6 @@ static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
         const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        tl_f8 x[6];
         if (g->linked && g->rows == g->fixed) {
             continue;
         }
@@ -131,15 +216,7 @@ static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
             store_pair(pushes, g->a, g->b, &p);
             continue;
         }
-        for (uint32_t k = 0; k < g->fixed; k++) {
-            tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
-            error = tl_f8_add(error, joint_speed(&p, &rows[k], is_linear_row(g->code[k])));
-            x[k] = tl_f8_neg(tl_f8_mul(share, error));
-        }
-        solve_factored(g, x);
-        for (uint32_t k = 0; k < g->fixed; k++) {
-            joint_apply(&p, &rows[k], is_linear_row(g->code[k]), x[k]);
-        }
+        push_equalities(g, rows, &p);
         store_pair(pushes, g->a, g->b, &p);
     }
 }
@@ -149,7 +226,7 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        if (g->linked && g->rows == g->fixed) {
+        if ((g->linked && g->rows == g->fixed) || is_exact(step, g)) {
             continue;
         }
         load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
@@ -162,7 +239,7 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
             }
         }
         if (!g->linked) {
-            solve_equalities(g, rows, &p, before_move);
+            solve_equalities(step, g, rows, &p, before_move);
         }
         store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
@@ -171,10 +248,11 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
 static void solve_joints(const tl_step *step, uint32_t first, uint32_t last) { run_joints(step, first, last, 1); }
 static void relax_joints(const tl_step *step, uint32_t first, uint32_t last) { run_joints(step, first, last, 0); }
 
-static void apply_all(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, float sign) {
+static void apply_all(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, float sign, int kinds) {
     for (uint32_t k = 0; k < g->rows; k++) {
         tl_f8 impulse = tl_f8_mul(tl_f8_set1(sign), tl_f8_load(rows[k].impulse));
-        joint_apply(p, &rows[k], is_linear_row(g->code[k]), impulse);
+        int kind = row_kind(g, k);
+        joint_apply(p, &rows[k], kind < kinds ? kind : ROW_ANGULAR, impulse);
     }
 }
 
@@ -185,15 +263,17 @@ static void begin_joints(const tl_step *step, uint32_t first, uint32_t last) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
+        keep_frames(step, g);
         make_joint_rows(step, g);
         load_pair(velocities, g->a, g->b, &p);
-        apply_all(g, rows, &p, 1.0f);
+        apply_all(g, rows, &p, 1.0f, ROW_AXIS + 3);
         store_pair(velocities, g->a, g->b, &p);
     }
 }
 
 /* Rows after the poses changed. The next sub-step starts from the present impulses along the new rows and not the old
- * ones: the velocity that they are reckoned from is moved by the difference. */
+ * ones: the velocity that they are reckoned from is moved by the difference, which rows along the world's axes have in
+ * their angular parts alone. */
 static void turn_joints(const tl_step *step, uint32_t first, uint32_t last) {
     float *befores = tl_row_before(step->h)->f;
     for (uint32_t i = first; i < last; i++) {
@@ -205,10 +285,10 @@ static void turn_joints(const tl_step *step, uint32_t first, uint32_t last) {
         }
         load_pair(befores, g->a, g->b, &p);
         p.ta = tl_f8_load(g->turns[0]), p.tb = tl_f8_load(g->turns[1]);
-        apply_all(g, rows, &p, 1.0f);
+        apply_all(g, rows, &p, 1.0f, ROW_AXIS);
         make_joint_rows(step, g);
         p.ta = tl_f8_load(g->turns[0]), p.tb = tl_f8_load(g->turns[1]);
-        apply_all(g, rows, &p, -1.0f);
+        apply_all(g, rows, &p, -1.0f, ROW_AXIS);
         store_pair(befores, g->a, g->b, &p);
     }
 }

@@ -80,6 +80,18 @@ static inline uint32_t live_rows(link_lane k) {
     return live;
 }
 
+/* What the joint of a row has to do with that of a column. */
+static void link_block(const tl_block *b, link_lane row, link_lane column, uint32_t rows, uint32_t columns, float *v) {
+    for (uint32_t i = 0; i < rows * column.g->linked; i++) {
+        wf_store(v + i * TL_WIDTH, wf_set1(0.0f));
+    }
+    for (uint32_t i = 0; i < 4u; i++) {
+        if (b->shares >> i & 1u) {
+            link_share(row, column, rows, columns, i / 2u, i % 2u, v);
+        }
+    }
+}
+
 static void link_factor(const tl_header *h, const tl_linkage *l, float *v) {
     const tl_block_node *node = tl_linkage_nodes(h) + l->first_node;
     const tl_block *block = tl_linkage_blocks(h);
@@ -92,15 +104,7 @@ static void link_factor(const tl_header *h, const tl_linkage *l, float *v) {
         link_diagonal(column, live[j], v + node[j].diagonal * TL_WIDTH);
         for (uint32_t k = 0; k < node[j].blocks; k++) {
             const tl_block *b = &block[node[j].first + k];
-            float *at = v + b->values * TL_WIDTH;
-            for (uint32_t i = 0; i < node[j].rows * live[b->node]; i++) {
-                wf_store(at + i * TL_WIDTH, wf_set1(0.0f));
-            }
-            for (uint32_t i = 0; i < 4u; i++) {
-                if (b->shares >> i & 1u) {
-                    link_share(link_of(h, l, b->node), column, live[b->node], live[j], i / 2u, i % 2u, at);
-                }
-            }
+            link_block(b, link_of(h, l, b->node), column, live[b->node], live[j], v + b->values * TL_WIDTH);
         }
     }
     ldlt_factor(node, block, live, l->nodes, v);

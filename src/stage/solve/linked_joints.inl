@@ -1,6 +1,8 @@
 /* Linked joints, eight at a time: what their linkage has to meet, and what comes of it. */
 #include "stage/solve/linkages.inl"
 
+#include "stage/solve/cuts.inl"
+
 static inline tl_m8 is_hard(const tl_joint_row *row) {
     return tl_f8_eq(tl_f8_add(tl_f8_load(row->stiffness), tl_f8_load(row->damping)), tl_f8_zero());
 }
@@ -9,7 +11,7 @@ static inline tl_m8 is_hard(const tl_joint_row *row) {
 static inline tl_f8 speed_to_meet(const tl_joint_group *g, const tl_joint_row *rows, uint32_t k,
                                   const pair_velocity *p) {
     tl_f8 give = tl_f8_mul(tl_f8_set1(TL_BLOCK_RAISE), tl_f8_load(g->matrix[k * (k + 1u) / 2u + k]));
-    return tl_f8_mad(joint_speed(p, &rows[k], is_linear_row(g->code[k])), give, tl_f8_load(rows[k].impulse));
+    return tl_f8_mad(joint_speed(p, &rows[k], row_kind(g, k)), give, tl_f8_load(rows[k].impulse));
 }
 
 static inline void set_active(tl_joint_group *g, uint32_t k, tl_m8 holds) {
@@ -34,7 +36,7 @@ static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) 
     for (uint32_t i = first; i < last; i++) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
-        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+        if (!g->linked || is_exact(step, g) || (step->again && !(g->far & TL_FAR_AGAIN))) {
             continue;
         }
         pair_velocity p;
@@ -79,7 +81,7 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
         tl_m8 far = tl_m8_zero();
         for (uint32_t k = 0; k < g->fixed; k++) {
             tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
-            error = tl_f8_add(error, joint_speed(&p, &rows[k], is_linear_row(g->code[k])));
+            error = tl_f8_add(error, joint_speed(&p, &rows[k], row_kind(g, k)));
             tl_f8_store(g->x[k], tl_f8_neg(error));
             tl_f8 most = tl_f8_set1(is_linear_row(g->code[k]) ? FAR_AWAY : FAR_TURNED);
             far = tl_m8_or(far, tl_f8_gt(tl_f8_abs(error), most));
@@ -104,7 +106,7 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
-        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+        if (!g->linked || is_exact(step, g) || (step->again && !(g->far & TL_FAR_AGAIN))) {
             continue;
         }
         pair_velocity p;
@@ -120,8 +122,10 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
                 now = tl_f8_select(wrong, tl_f8_zero(), now);
                 pulls = tl_m8_or(pulls, wrong);
             }
-            tl_f8_store(rows[k].impulse, now);
-            joint_apply(&p, &rows[k], linear, tl_f8_sub(now, old));
+            if (!counts_for_last(step, g)) {
+                tl_f8_store(rows[k].impulse, now);
+            }
+            joint_apply(&p, &rows[k], row_kind(g, k), tl_f8_sub(now, old));
             pull = linear ? v8_mad(pull, now, v8_load(rows[k].n[0])) : pull;
         }
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(pulls) ? (uint32_t)TL_FAR_NOW : 0u);
@@ -140,7 +144,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
         pair_velocity p;
         load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
         for (uint32_t k = 0; k < g->linked; k++) {
-            joint_apply(&p, &rows[k], is_linear_row(g->code[k]), tl_f8_load(g->x[k]));
+            joint_apply(&p, &rows[k], row_kind(g, k), tl_f8_load(g->x[k]));
         }
         store_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
     }
@@ -149,10 +153,12 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
 static void solve_linkages(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         const tl_linkage *l = &tl_linkages(step->h)[i];
-        if (step->again && !l->far) {
+        if ((step->again && !l->far) || (step->skip_exact && l->exact)) {
             continue;
         }
-        if (l->wide) {
+        if (l->cuts) {
+            cut_solve(step->h, l);
+        } else if (l->wide) {
             link_solve(step->h, l);
         } else {
             tl_linkage_solve_one(step->h, l);

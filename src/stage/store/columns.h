@@ -83,7 +83,7 @@
     X(joint_row_pool, tl_joint_row, JOINTROW, ROWS, STEP, 4)                                                           \
     X(linkages, tl_linkage, JOINT, ROWS, STEP, 4)                                                                      \
     X(linkage_shapes, tl_linkage_shape, JOINT, ROWS, STEP, 4)                                                          \
-    X(linkage_nodes, tl_block_node, JOINT, ROWS, STEP, 4)                                                              \
+    X(linkage_nodes, tl_block_node, LINKNODE, ROWS, STEP, 4)                                                           \
     X(linkage_blocks, tl_block, LINKBLOCK, ROWS, STEP, 4)                                                              \
     X(linkage_values, float, LINKVALUE, ROWS, STEP, 4)                                                                 \
     X(linkage_places, uint32_t, JOINT, ROWS, STEP, 4)                                                                  \

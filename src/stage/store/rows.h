@@ -64,21 +64,28 @@ typedef struct tl_contact_group {
 #define TL_JOINT_ROWS 12u
 #define TL_LINK_ROWS 6u
 
-/* One scalar row of eight joints. */
+/* One scalar row of eight joints: what is made of the poses, then what stays. */
 typedef struct tl_joint_row {
     float n[3][TL_LANES];                   /* linear direction or angular axis */
     float ja[3][TL_LANES], jb[3][TL_LANES]; /* whitened */
     float error[TL_LANES];                  /* m or rad */
-    float curve[TL_LANES]; /* m/s: half of what the bodies' turning adds to the error's rate in a sub-step */
+    float curve[TL_LANES];    /* m/s: half of what the bodies' turning adds to the error's rate in a sub-step */
+    float mass[TL_LANES];     /* of ranges and drives */
+    float at_lower[TL_LANES]; /* 1: the lower side of the range is the near one; of ranges */
     float lower[TL_LANES], upper[TL_LANES]; /* of the position, or target twice for a drive */
     float stiffness[TL_LANES], damping[TL_LANES];
     float speed[TL_LANES];    /* target of a drive */
     float most[TL_LANES];     /* N or N m: bound of the force */
     float per_mass[TL_LANES]; /* 1: stiffness and damping are per effective mass */
     float impulse[TL_LANES];
-    float mass[TL_LANES];
-    float at_lower[TL_LANES]; /* 1: the lower side of the range is the near one */
 } tl_joint_row;
+
+/* joint_group.needs: what its rows are made of. */
+enum {
+    TL_JOINT_POINT = 1, /* the first three rows hold a point and are along the world's axes; their impulses are kept
+                         * along frame a, as others are */
+    TL_JOINT_AXES = 2   /* others are along frame a or tell how it stands to frame b */
+};
 
 /* joint_group.far: an error is so large that taking it back leaves one; the group is pushed again. */
 enum { TL_FAR_NOW = 1, TL_FAR_AGAIN = 2 };
@@ -92,25 +99,28 @@ typedef struct tl_joint_group {
     uint32_t stale;              /* bits of lanes: their linkage is to be factored anew */
     uint32_t stiff;              /* linked: one pulls so hard that its bodies are to be looked at */
     uint32_t far;                /* linked: TL_FAR_* */
-    uint32_t reserved[3];
+    uint32_t exact;              /* one solve of its velocities in a sub-step leaves nothing to solve */
+    uint32_t needs;              /* TL_JOINT_* */
+    uint32_t reserved;
     uint32_t code[TL_JOINT_ROWS];
     float pa[3][TL_LANES], qa[4][TL_LANES]; /* the joint's frame in a's mass frame */
     float pb[3][TL_LANES], qb[4][TL_LANES];
     float mass[2][TL_LANES], turns[2][TL_LANES]; /* of a and b: inverse mass, 1 if impulses turn it */
+    float active[TL_LINK_ROWS][TL_LANES];        /* linked: 1 for a row that holds now */
+    float give[2][TL_LANES]; /* m / (kg m^2): |arm| over the least moment of inertia across it, of a and b */
+    float pull[TL_LANES];    /* N s: the linear impulse of a sub-step */
+    float k[2][9][TL_LANES]; /* K of a and b, by rows */
     /* The matrix of the first rows, the lower half by rows. Of linked joints it takes in their hard ranges; of others
      * it is the equalities' and stands as L D L^T with D inverted. */
     float matrix[21][TL_LANES];
-    float active[TL_LINK_ROWS][TL_LANES]; /* linked: 1 for a row that holds now */
-    float x[TL_LINK_ROWS][TL_LANES];      /* linked: speeds or errors to be met, then impulses */
-    float give[2][TL_LANES]; /* m / (kg m^2): |arm| over the least moment of inertia across it, of a and b */
-    float pull[TL_LANES];    /* N s: the linear impulse of a sub-step */
+    float x[TL_LINK_ROWS][TL_LANES]; /* linked: speeds or errors to be met, then impulses */
 } tl_joint_group;
 
 /* A structure that linkages have in common. */
 typedef struct tl_linkage_shape {
     uint32_t first_node, nodes, ends;
     uint32_t first_joint; /* in linkage_order: the joints of the first of them, others as `next` has it */
-    uint32_t members, values;
+    uint32_t members, values, planned;
     uint32_t wide, open; /* members still to be put side by side, and the linkage that takes them, or TL_NONE */
 } tl_linkage_shape;
 
@@ -123,6 +133,10 @@ typedef struct tl_linkage {
     uint32_t values;             /* in linkage_values */
     uint32_t lanes, wide;        /* sets in it; 1 if it is solved eight wide */
     uint32_t far;                /* 1 if it is to be pushed again */
+    uint32_t exact;              /* 1 if nothing but equalities holds its bodies */
+    /* Of one that is cut into pieces: joints of a piece, cuts (0: it is not cut), groups from, nodes of a piece and
+     * then of the cuts, values of the cuts behind those of the pieces */
+    uint32_t inner, cuts, first_group, cut, cut_values;
 } tl_linkage;
 
 #endif

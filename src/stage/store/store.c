@@ -46,6 +46,7 @@ uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_
     capacity[TL_COUNT_GROUP] = group_capacity(def->contact_capacity);
     capacity[TL_COUNT_JOINTGROUP] = def->joint_capacity;
     capacity[TL_COUNT_JOINTROW] = def->joint_capacity * 6u + TL_JOINT_ROWS;
+    capacity[TL_COUNT_LINKNODE] = 2u * def->joint_capacity;
     capacity[TL_COUNT_LINKBLOCK] = def->joint_capacity * TL_LINK_BLOCKS;
     capacity[TL_COUNT_LINKVALUE] = def->joint_capacity * TL_LINK_VALUES;
     capacity[TL_COUNT_LINKSCRATCH] = TL_BLOCK_SCRATCH(def->joint_capacity, def->joint_capacity + 1u);

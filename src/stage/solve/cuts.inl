@@ -1,0 +1,125 @@
+/* Linkages cut into pieces (stage/row/cuts.c), eight pieces side by side. Of the nodes of a piece the last but one is
+ * the cut behind it, and the last one the cut before it, which is the one behind the piece one lane down. */
+#include <string.h>
+
+static inline link_lane cut_group(const tl_header *h, const tl_linkage *l, uint32_t k) {
+    const tl_joint_group *g = &tl_joint_group_pool(h)[l->first_group + k];
+    link_lane lane = {g, tl_joint_row_pool(h) + g->first_row, 0};
+    return lane;
+}
+
+/* The cuts before the pieces: what the cuts behind them are, one lane up. Holds no more than coupling them to the
+ * pieces' first joints takes, which are on their second side. */
+typedef struct cuts_before {
+    tl_joint_group g;
+    tl_joint_row rows[TL_LINK_ROWS];
+} cuts_before;
+
+static inline void lane_up(const float *from, float *to) {
+    to[0] = 0.0f;
+    memcpy(to + 1, from, (TL_LANES - 1u) * sizeof *to);
+}
+
+static void find_cuts_before(link_lane behind, uint32_t live, cuts_before *c) {
+    memcpy(c->g.code, behind.g->code, sizeof c->g.code);
+    lane_up(behind.g->mass[1], c->g.mass[1]);
+    lane_up(behind.g->turns[1], c->g.turns[1]);
+    for (uint32_t i = 0; i < live; i++) {
+        lane_up(behind.g->active[i], c->g.active[i]);
+        for (uint32_t k = 0; k < 3u; k++) {
+            lane_up(behind.rows[i].n[k], c->rows[i].n[k]);
+            lane_up(behind.rows[i].jb[k], c->rows[i].jb[k]);
+        }
+    }
+}
+
+/* What is left of the cuts once the pieces are eliminated: of both pieces that each one lies between. */
+static void gather_cuts(const tl_header *h, const tl_linkage *l, const float *v, float *rest) {
+    const tl_block_node *node = tl_linkage_nodes(h) + l->cut, *behind = &node[l->inner], *before = behind + 1;
+    const tl_block_node *cut = before + 1;
+    const tl_block *block = tl_linkage_blocks(h);
+    uint32_t rows = behind->rows;
+    const float *across = v + block[behind->first].values * TL_LANES;
+    for (uint32_t j = 0; j < l->cuts; j++) {
+        for (uint32_t e = 0; e < rows * (rows + 1u) / 2u; e++) {
+            float next = j + 1u < TL_LANES ? v[(before->diagonal + e) * TL_LANES + j + 1u] : 0.0f;
+            rest[cut[j].diagonal + e] = v[(behind->diagonal + e) * TL_LANES + j] + next;
+        }
+        float *to = j > 0 ? rest + block[cut[j - 1u].first].values : NULL;
+        for (uint32_t e = 0; e < rows * rows && to; e++) {
+            to[e % rows * rows + e / rows] = across[e * TL_LANES + j];
+        }
+    }
+}
+
+static void cut_factor(const tl_header *h, const tl_linkage *l, float *v) {
+    const tl_block_node *node = tl_linkage_nodes(h) + l->cut;
+    const tl_block *block = tl_linkage_blocks(h);
+    uint32_t *live = tl_linkage_live(h) + l->first_place, inner = l->inner, rows = node->rows;
+    cuts_before before;
+    for (uint32_t j = 0; j <= inner; j++) {
+        live[j] = live_rows(cut_group(h, l, j));
+        link_diagonal(cut_group(h, l, j), live[j], v + node[j].diagonal * TL_WIDTH);
+    }
+    for (uint32_t j = inner + 1u; j < inner + 2u + l->cuts; j++) {
+        live[j] = live[inner];
+    }
+    memset(v + node[inner + 1u].diagonal * TL_WIDTH, 0, rows * (rows + 1u) / 2u * TL_WIDTH * sizeof *v);
+    find_cuts_before(cut_group(h, l, inner), live[inner], &before);
+    for (uint32_t j = 0; j <= inner; j++) {
+        for (uint32_t k = 0; k < node[j].blocks; k++) {
+            const tl_block *b = &block[node[j].first + k];
+            link_lane last = {&before.g, before.rows, 0};
+            link_lane row = b->node <= inner ? cut_group(h, l, b->node) : last;
+            link_block(b, row, cut_group(h, l, j), live[b->node], live[j], v + b->values * TL_WIDTH);
+        }
+    }
+    ldlt_raise(node, live, inner + 1u, v);
+    ldlt_eliminate(node, block, live, inner, v);
+    gather_cuts(h, l, v, v + l->cut_values);
+    tl_cuts_factor(h, l);
+}
+
+static int cut_is_stale(const tl_header *h, const tl_linkage *l) {
+    uint32_t stale = 0;
+    for (uint32_t j = 0; j <= l->inner; j++) {
+        tl_joint_group *g = &tl_joint_group_pool(h)[l->first_group + j];
+        stale |= g->stale;
+        g->stale = 0;
+    }
+    return stale != 0;
+}
+
+/* The x of a cut linkage's joints becomes the impulses that meet it. */
+static void cut_solve(const tl_header *h, const tl_linkage *l) {
+    const tl_block_node *node = tl_linkage_nodes(h) + l->cut, *cut = node + l->inner + 2u;
+    const uint32_t *live = tl_linkage_live(h) + l->first_place, inner = l->inner;
+    float *v = tl_linkage_values(h) + l->values, *rest = v + l->cut_values;
+    float *behind = v + node[inner].x * TL_WIDTH, *before = v + node[inner + 1u].x * TL_WIDTH;
+    if (cut_is_stale(h, l)) {
+        cut_factor(h, l, v);
+    }
+    for (uint32_t j = 0; j <= inner; j++) {
+        memcpy(v + node[j].x * TL_WIDTH, cut_group(h, l, j).g->x, live[j] * TL_WIDTH * sizeof *v);
+    }
+    memset(before, 0, live[inner] * TL_WIDTH * sizeof *v);
+    ldlt_forward_pass(node, tl_linkage_blocks(h), live, inner, v);
+    for (uint32_t i = 0; i < live[inner]; i++, behind += TL_WIDTH, before += TL_WIDTH) {
+        for (uint32_t j = 0; j < l->cuts; j++) {
+            rest[cut[j].x + i] = behind[j] + (j + 1u < TL_LANES ? before[j + 1u] : 0.0f);
+        }
+    }
+    tl_cuts_solve(h, l);
+    behind = v + node[inner].x * TL_WIDTH, before = v + node[inner + 1u].x * TL_WIDTH;
+    for (uint32_t i = 0; i < live[inner]; i++, behind += TL_WIDTH, before += TL_WIDTH) {
+        for (uint32_t j = 0; j < TL_LANES; j++) {
+            behind[j] = j < l->cuts ? rest[cut[j].x + i] : 0.0f;
+        }
+        lane_up(behind, before);
+    }
+    ldlt_back_pass(node, tl_linkage_blocks(h), live, inner, v);
+    for (uint32_t j = 0; j <= inner; j++) {
+        tl_joint_group *g = &tl_joint_group_pool(h)[l->first_group + j];
+        memcpy(g->x, v + node[j].x * TL_WIDTH, live[j] * TL_WIDTH * sizeof *v);
+    }
+}
