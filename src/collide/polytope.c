@@ -122,23 +122,6 @@ int tl_polytope_has(const tl_polytope *p, uint32_t feature) {
     }
 }
 
-tl_frame tl_frame_of(const talus_pose *pose) {
-    double x = (double)pose->rotation.x, y = (double)pose->rotation.y, z = (double)pose->rotation.z,
-           w = (double)pose->rotation.w;
-    double s = 2.0 / (x * x + y * y + z * z + w * w);
-    tl_frame f = {{1.0 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)},
-                  {s * (x * y - z * w), 1.0 - s * (x * x + z * z), s * (y * z + x * w)},
-                  {s * (x * z + y * w), s * (y * z - x * w), 1.0 - s * (x * x + y * y)},
-                  {(double)pose->position.x, (double)pose->position.y, (double)pose->position.z}};
-    return f;
-}
-
-tl_frame tl_frame_between(const tl_frame *a, const tl_frame *b) {
-    tl_frame f = {tl_frame_turn_back(a, b->x), tl_frame_turn_back(a, b->y), tl_frame_turn_back(a, b->z),
-                  tl_frame_point_back(a, b->t)};
-    return f;
-}
-
 uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t v, int near_it) {
     double best = tl_d_dot(direction, tl_polytope_vertex(p, v));
     if (!near_it || p->vertex_count <= 8u) {

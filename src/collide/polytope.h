@@ -44,11 +44,6 @@ typedef struct tl_frame {
     tl_d3 x, y, z, t;
 } tl_frame;
 
-/* Of a pose whose rotation need not be of unit length, only not 0. */
-tl_frame tl_frame_of(const talus_pose *pose);
-/* b seen from a, both seen from one frame. */
-tl_frame tl_frame_between(const tl_frame *a, const tl_frame *b);
-
 static inline tl_d3 tl_frame_turn(const tl_frame *f, tl_d3 v) {
     return tl_d(f->x.x * v.x + f->y.x * v.y + f->z.x * v.z, f->x.y * v.x + f->y.y * v.y + f->z.y * v.z,
                 f->x.z * v.x + f->y.z * v.y + f->z.z * v.z);
@@ -58,6 +53,24 @@ static inline tl_d3 tl_frame_turn_back(const tl_frame *f, tl_d3 v) {
 }
 static inline tl_d3 tl_frame_point(const tl_frame *f, tl_d3 p) { return tl_d_add(tl_frame_turn(f, p), f->t); }
 static inline tl_d3 tl_frame_point_back(const tl_frame *f, tl_d3 p) { return tl_frame_turn_back(f, tl_d_sub(p, f->t)); }
+
+/* Of a pose whose rotation need not be of unit length, only not 0. */
+static inline tl_frame tl_frame_of(const talus_pose *pose) {
+    double x = (double)pose->rotation.x, y = (double)pose->rotation.y, z = (double)pose->rotation.z,
+           w = (double)pose->rotation.w;
+    double s = 2.0 / (x * x + y * y + z * z + w * w);
+    tl_frame f = {{1.0 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)},
+                  {s * (x * y - z * w), 1.0 - s * (x * x + z * z), s * (y * z + x * w)},
+                  {s * (x * z + y * w), s * (y * z - x * w), 1.0 - s * (x * x + y * y)},
+                  {(double)pose->position.x, (double)pose->position.y, (double)pose->position.z}};
+    return f;
+}
+/* b seen from a, both seen from one frame. */
+static inline tl_frame tl_frame_between(const tl_frame *a, const tl_frame *b) {
+    tl_frame f = {tl_frame_turn_back(a, b->x), tl_frame_turn_back(a, b->y), tl_frame_turn_back(a, b->z),
+                  tl_frame_point_back(a, b->t)};
+    return f;
+}
 
 static inline tl_d3 tl_polytope_vertex(const tl_polytope *p, uint32_t i) {
     return tl_d((double)p->x[i], (double)p->y[i], (double)p->z[i]);

@@ -30,12 +30,12 @@ static talus_status check_pose(const talus_pose *p) {
     if (!p) {
         return TALUS_BAD_ARGUMENT;
     }
-    if (!tl_is_finite_pose(p)) {
-        return TALUS_NOT_FINITE;
+    double x = (double)p->rotation.x, y = (double)p->rotation.y, z = (double)p->rotation.z, w = (double)p->rotation.w;
+    double square = x * x + y * y + z * z + w * w;
+    if (within(p->position) && square > 0.0 && square < 1e80) {
+        return TALUS_OK; /* none of these holds of what is not finite */
     }
-    const talus_quat q = p->rotation;
-    int turned = q.x != 0.0f || q.y != 0.0f || q.z != 0.0f || q.w != 0.0f;
-    return turned && within(p->position) ? TALUS_OK : TALUS_BAD_ARGUMENT;
+    return tl_is_finite_pose(p) ? TALUS_BAD_ARGUMENT : TALUS_NOT_FINITE;
 }
 
 talus_status tl_motion_check(const talus_motion *m) {
@@ -56,17 +56,11 @@ talus_status tl_tolerance_check(float tolerance) {
 
 /* Two shapes where they stand. */
 typedef struct placed {
-    tl_convex shape[2];
     tl_polytope a, b;
     tl_frame frame; /* of A in the caller's */
     tl_frame b_in_a;
     talus_feature_pair features;
 } placed;
-
-static tl_convex inner(const talus_convex *c) {
-    tl_convex s = {c->geometry, c->hull};
-    return s;
-}
 
 static talus_status place(const talus_convex *a, const talus_pose *pose_a, const talus_convex *b,
                           const talus_pose *pose_b, const talus_feature_pair *features, placed *p) {
@@ -77,10 +71,8 @@ static talus_status place(const talus_convex *a, const talus_pose *pose_a, const
     if (status != TALUS_OK) {
         return status;
     }
-    p->shape[0] = inner(a);
-    p->shape[1] = inner(b);
-    tl_polytope_init(&p->a, &p->shape[0]);
-    tl_polytope_init(&p->b, &p->shape[1]);
+    tl_polytope_init(&p->a, a);
+    tl_polytope_init(&p->b, b);
     tl_frame frame_b = tl_frame_of(pose_b);
     p->frame = tl_frame_of(pose_a);
     p->b_in_a = tl_frame_between(&p->frame, &frame_b);
@@ -250,11 +242,10 @@ talus_status talus_time_of_contact(const talus_convex *a, const talus_motion *mo
     if (status != TALUS_OK) {
         return status;
     }
-    tl_convex shape_a = inner(a), shape_b = inner(b);
     tl_moving moving_a, moving_b;
     talus_feature_pair cold = {0u, 0u};
-    tl_moving_init(&moving_a, &shape_a, motion_a);
-    tl_moving_init(&moving_b, &shape_b, motion_b);
+    tl_moving_init(&moving_a, a, motion_a);
+    tl_moving_init(&moving_b, b, motion_b);
     tl_advance(&moving_a, &moving_b, tolerance, 1.0, method, features ? features : &cold, out);
     return TALUS_OK;
 }
