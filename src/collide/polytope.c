@@ -45,27 +45,15 @@ static void init_box(tl_polytope *p, talus_vec3 half) {
     p->size = tl_length(half);
 }
 
-static void init_hull(tl_polytope *p, const talus_hull *h) {
-    p->x = tl_hull_x(h), p->y = tl_hull_y(h), p->z = tl_hull_z(h);
-    p->nx = tl_hull_planes(h);
-    p->ny = p->nx + h->face_stride, p->nz = p->nx + 2u * h->face_stride, p->d = p->nx + 3u * h->face_stride;
-    p->edges = tl_hull_edges(h);
-    p->vertex_edge = tl_hull_vertex_edge(h);
-    p->face_edge = tl_hull_face_edge(h);
-    p->vertex_count = h->vertex_count, p->edge_count = h->half_edge_count, p->face_count = h->face_count;
-    p->radius = 0.0f;
-    p->size = h->outer_radius;
-    p->center = tl_d_from(h->centroid);
-}
-
 static void init_round(tl_polytope *p, const talus_geometry *g) {
     p->round = 1;
     p->radius = 0.0f;
     p->center = tl_d(0.0, 0.0, 0.0);
     p->size = g->half_height + tl_max(g->radius_top, g->radius_bottom);
+    p->vertex_count = p->edge_count = p->face_count = 0u;
 }
 
-void tl_polytope_init(tl_polytope *p, const tl_convex *shape) {
+void tl_polytope_init_plain(tl_polytope *p, const tl_convex *shape) {
     const talus_geometry *g = &shape->geometry;
     p->shape = shape;
     p->round = 0;
@@ -98,27 +86,12 @@ void tl_polytope_init(tl_polytope *p, const tl_convex *shape) {
     case TALUS_BOX:
         init_box(p, g->half);
         break;
-    case TALUS_HULL:
-        init_hull(p, shape->hull);
-        break;
     case TALUS_CYLINDER:
+    case TALUS_HULL:
     case TALUS_SHAPE_TYPE_COUNT:
     default:
         init_round(p, g);
         break;
-    }
-}
-
-int tl_polytope_has(const tl_polytope *p, uint32_t feature) {
-    switch (p->round ? 0u : TL_FEATURE_KIND(feature)) {
-    case TL_FEATURE_VERTEX:
-        return TL_FEATURE_INDEX(feature) < p->vertex_count;
-    case TL_FEATURE_EDGE:
-        return TL_FEATURE_INDEX(feature) < p->edge_count;
-    case TL_FEATURE_FACE:
-        return TL_FEATURE_INDEX(feature) < p->face_count;
-    default:
-        return 0;
     }
 }
 

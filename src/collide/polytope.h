@@ -19,7 +19,7 @@
 
 typedef struct tl_polytope {
     const tl_convex *shape;
-    int round; /* a cylinder, a cut cone, a capsule of two radii: nothing but the shape and the size is set */
+    int round;                   /* a cylinder, a cut cone, a capsule of two radii: it has no features */
     const float *x, *y, *z;      /* of vertices */
     const float *nx, *ny, *nz;   /* outward unit normals of faces: n.p = d */
     const float *d;              /* m */
@@ -33,11 +33,36 @@ typedef struct tl_polytope {
     float own[48];                                 /* coordinates of what is no hull */
 } tl_polytope;
 
+/* Of what is no hull. */
+void tl_polytope_init_plain(tl_polytope *out, const tl_convex *shape);
+
 /* *out points to the shape and into itself: not to be copied. */
-void tl_polytope_init(tl_polytope *out, const tl_convex *shape);
+static inline void tl_polytope_init(tl_polytope *out, const tl_convex *shape) {
+    const talus_hull *h = shape->hull;
+    if (shape->geometry.type != TALUS_HULL) {
+        tl_polytope_init_plain(out, shape);
+        return;
+    }
+    out->shape = shape;
+    out->round = 0;
+    out->x = tl_hull_x(h), out->y = tl_hull_y(h), out->z = tl_hull_z(h);
+    out->nx = tl_hull_planes(h), out->ny = out->nx + h->face_stride;
+    out->nz = out->ny + h->face_stride, out->d = out->nz + h->face_stride;
+    out->vertex_edge = tl_hull_vertex_edge(h);
+    out->face_edge = tl_hull_face_edge(h);
+    out->edges = tl_hull_edges(h);
+    out->vertex_count = h->vertex_count, out->edge_count = h->half_edge_count, out->face_count = h->face_count;
+    out->radius = 0.0f;
+    out->size = h->outer_radius;
+    out->center = tl_d_from(h->centroid);
+}
 
 /* Whether the polytope has that feature. */
-int tl_polytope_has(const tl_polytope *p, uint32_t feature);
+static inline int tl_polytope_has(const tl_polytope *p, uint32_t feature) {
+    uint32_t kind = TL_FEATURE_KIND(feature), count = kind == TL_FEATURE_VERTEX ? p->vertex_count : 0u;
+    count = kind == TL_FEATURE_EDGE ? p->edge_count : kind == TL_FEATURE_FACE ? p->face_count : count;
+    return TL_FEATURE_INDEX(feature) < count;
+}
 
 /* p_outer = x * p.x + y * p.y + z * p.z + t */
 typedef struct tl_frame {

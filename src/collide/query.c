@@ -26,16 +26,24 @@ static int within(talus_vec3 v) {
     return v.x <= TALUS_MAX_COORDINATE && v.y <= TALUS_MAX_COORDINATE && v.z <= TALUS_MAX_COORDINATE;
 }
 
+/* Enough for a pose to be sound, and false of what is not finite. */
+static inline int is_plain(const talus_pose *p) {
+    double x = (double)p->rotation.x, y = (double)p->rotation.y, z = (double)p->rotation.z, w = (double)p->rotation.w;
+    double turn = x * x + y * y + z * z + w * w, most = (double)TALUS_MAX_COORDINATE;
+    tl_d3 t = tl_d_from(p->position);
+    return turn > 0.0 && turn < 1e80 && tl_d_dot(t, t) <= most * most;
+}
+
 static talus_status check_pose(const talus_pose *p) {
     if (!p) {
         return TALUS_BAD_ARGUMENT;
     }
-    double x = (double)p->rotation.x, y = (double)p->rotation.y, z = (double)p->rotation.z, w = (double)p->rotation.w;
-    double square = x * x + y * y + z * z + w * w;
-    if (within(p->position) && square > 0.0 && square < 1e80) {
-        return TALUS_OK; /* none of these holds of what is not finite */
+    if (!tl_is_finite_pose(p)) {
+        return TALUS_NOT_FINITE;
     }
-    return tl_is_finite_pose(p) ? TALUS_BAD_ARGUMENT : TALUS_NOT_FINITE;
+    const talus_quat q = p->rotation;
+    int turned = q.x != 0.0f || q.y != 0.0f || q.z != 0.0f || q.w != 0.0f;
+    return turned && within(p->position) ? TALUS_OK : TALUS_BAD_ARGUMENT;
 }
 
 talus_status tl_motion_check(const talus_motion *m) {
@@ -64,12 +72,12 @@ typedef struct placed {
 
 static talus_status place(const talus_convex *a, const talus_pose *pose_a, const talus_convex *b,
                           const talus_pose *pose_b, const talus_feature_pair *features, placed *p) {
-    talus_status status = a && b ? check_pose(pose_a) : TALUS_BAD_ARGUMENT;
-    if (status == TALUS_OK) {
-        status = check_pose(pose_b);
-    }
-    if (status != TALUS_OK) {
-        return status;
+    if (!a || !b || !pose_a || !pose_b || !is_plain(pose_a) || !is_plain(pose_b)) {
+        talus_status status = a && b ? check_pose(pose_a) : TALUS_BAD_ARGUMENT;
+        status = status == TALUS_OK ? check_pose(pose_b) : status;
+        if (status != TALUS_OK) {
+            return status;
+        }
     }
     tl_polytope_init(&p->a, a);
     tl_polytope_init(&p->b, b);

@@ -390,7 +390,9 @@ static void start(walk *w) {
 /* From the cores to the surfaces. */
 static void swell(tl_closest *out, float ra, float rb) {
     out->apart = 0;
-    if (out->cores_apart) {
+    if (out->cores_apart && ra + rb == 0.0f) {
+        out->apart = 1;
+    } else if (out->cores_apart) {
         double low = tl_d_max(out->gap - (double)rb, 0.0), high = tl_d_min(out->gap, (double)ra);
         out->gap -= (double)ra + (double)rb;
         out->apart = out->gap > 0.0;
