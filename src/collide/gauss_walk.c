@@ -17,8 +17,8 @@
 void tl_gauss_look(tl_gauss_pair *pair, tl_d3 n, uint32_t ia, uint32_t ib, tl_gauss_depth *out) {
     const tl_polytope *a = pair->a, *b = pair->b;
     out->n = n;
-    out->ia = tl_polytope_support(a, n, ia, 1);
-    out->ib = tl_polytope_support(b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), ib, 1);
+    out->ia = tl_polytope_support(a, n, ia);
+    out->ib = tl_polytope_support(b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), ib);
     out->p = tl_d_sub(tl_polytope_vertex(a, out->ia), tl_frame_point(pair->frame, tl_polytope_vertex(b, out->ib)));
     out->value = tl_d_dot(n, out->p);
     out->feature_a = TL_FEATURE(TL_FEATURE_VERTEX, out->ia);
@@ -334,8 +334,9 @@ void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_d
         (void)corner(pair->b, features.b, 0u, &at, &ib);
     } else {
         n = by_expansion(pair);
-        ia = tl_polytope_support(pair->a, n, 0u, 0);
-        ib = tl_polytope_support(pair->b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), 0u, 0);
+        tl_d3 back = tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0));
+        ia = tl_polytope_near(pair->a, n, tl_polytope_seed(pair->a, n));
+        ib = tl_polytope_near(pair->b, back, tl_polytope_seed(pair->b, back));
     }
     tl_gauss_look(pair, tl_d_scale(n, 1.0 / tl_d_length(n)), ia, ib, out);
     if (known) {

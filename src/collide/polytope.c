@@ -1,7 +1,8 @@
 /* Features and support vertices of what has flat sides, frames, and the distance of segments. Metres. */
 #include "collide/polytope.h"
 
-#define JUMPS 32u /* vertices looked at before a climb: about the cube root of the largest hull, and a few more */
+#include "collide/support.h"
+#include "geom/hull_climb.h"
 
 /* Corner i is at +x if its bit 0 is set, +y bit 1, +z bit 2; the faces are -x +x -y +y -z +z. */
 static const tl_half_edge box_edges[24] = {{2, 4, 0, 0},  {17, 6, 5, 0}, {4, 6, 0, 0},  {20, 2, 3, 0}, {6, 2, 0, 0},
@@ -95,19 +96,32 @@ void tl_polytope_init_plain(tl_polytope *p, const tl_convex *shape) {
     }
 }
 
-uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t v, int near_it) {
+uint32_t tl_polytope_seed(const tl_polytope *p, tl_d3 direction) {
+    const talus_hull *h = p->shape->hull;
+    talus_vec3 d = tl_d_round(direction);
+    if (p->shape->geometry.type != TALUS_HULL) {
+        return tl_polytope_support(p, direction, 0u);
+    }
+    return h->squares ? tl_hull_seed(h, d) : tl_hull_support(h, d, 0u);
+}
+
+uint32_t tl_polytope_near(const tl_polytope *p, tl_d3 direction, uint32_t start) {
+    if (p->shape->geometry.type != TALUS_HULL) {
+        return tl_polytope_support(p, direction, start);
+    }
+    return tl_hull_support(p->shape->hull, tl_d_round(direction), start);
+}
+
+uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t v) {
     double best = tl_d_dot(direction, tl_polytope_vertex(p, v));
-    if (!near_it || p->vertex_count <= 8u) {
-        uint32_t stride = p->vertex_count > JUMPS ? p->vertex_count / JUMPS : 1u;
-        for (uint32_t i = 0; i < p->vertex_count; i += stride) {
+    if (p->vertex_count <= 8u) {
+        for (uint32_t i = 0; i < p->vertex_count; ++i) {
             double s = tl_d_dot(direction, tl_polytope_vertex(p, i));
             if (s > best) {
                 best = s, v = i;
             }
         }
-        if (stride == 1u) {
-            return v;
-        }
+        return v;
     }
     for (uint32_t steps = 0; steps < p->vertex_count; ++steps) {
         uint32_t first = p->vertex_edge[v], e = first, to = v;

@@ -104,9 +104,12 @@ static inline tl_d3 tl_polytope_normal(const tl_polytope *p, uint32_t face) {
     return tl_d((double)p->nx[face], (double)p->ny[face], (double)p->nz[face]);
 }
 
-/* The vertex furthest along a direction of the polytope's frame; near_it != 0: by climbing from `start`, else from the
- * best of a few spread over the hull (jump and walk: Muecke, Saias & Zhu 1996). */
-uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t start, int near_it);
+/* The vertex furthest along a direction of the polytope's frame, by climbing from `start`; by _near but for the
+ * rounding of floats. */
+uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t start);
+uint32_t tl_polytope_near(const tl_polytope *p, tl_d3 direction, uint32_t start);
+/* A vertex near to it, looked up. */
+uint32_t tl_polytope_seed(const tl_polytope *p, tl_d3 direction);
 
 /* Of what has faces: the one through which p is seen from the centre, by climbing from `face` (over the polar dual it
  * is a linear function); *height is below 1 if p is within. */

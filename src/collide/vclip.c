@@ -7,8 +7,8 @@
  *
  * A vertex inside of a region of a face but behind it, with all its edges leading further behind, is in the body or
  * beyond another face: the polar dual tells (a walk over faces to the one through which the vertex is seen from the
- * centre). A cold start begins with two vertices found by jumps and climbs (after Ehmann & Lin, Accurate and Fast
- * Proximity Queries Between Polyhedra Using Convex Surface Decomposition, 2001, who look directions up).
+ * centre). A cold start begins with two vertices that are looked up by direction (Ehmann & Lin, Accurate and Fast
+ * Proximity Queries Between Polyhedra Using Convex Surface Decomposition, 2001).
  *
  * Each shape's regions are evaluated in its own frame; metres. */
 #include "collide/vclip.h"
@@ -20,8 +20,8 @@
 #define GAP_SLACK 1e-6
 #define SIZE_SLACK 5e-7
 /* More rounds cost more than the steps they save. */
-#define START_ROUNDS 5
-#define START_GAIN 0.01
+#define START_ROUNDS 4
+#define START_SHORTER 4.0
 #define ROUNDING 1e-7 /* of a normal */
 #define NOTHING 1e-14 /* of the sizes: a distance that is all rounding */
 
@@ -133,6 +133,12 @@ static double root(double x, double *inverse) {
     double r = 1.0 / (double)sqrtf((float)x);
     *inverse = r * (1.5 - 0.5 * x * r * r); /* Newton's step brings 24 bits to 47 */
     return x * *inverse;
+}
+
+static tl_d3 unit_or(tl_d3 v, tl_d3 otherwise) {
+    double inverse, square = tl_d_dot(v, v);
+    (void)root(square > 0.0 ? square : 1.0, &inverse);
+    return square > 0.0 ? tl_d_scale(v, inverse) : otherwise;
 }
 
 /* The features hold the closest points p and q, in body 0's frame, d from one another; the bodies stand out over edges
@@ -368,21 +374,34 @@ static int step(walk *w) {
 static uint32_t pack(feature f) { return TL_FEATURE(f.kind, f.index); }
 static feature unpack(uint32_t word) { return make(TL_FEATURE_KIND(word), TL_FEATURE_INDEX(word)); }
 
-/* Vertices near to the closest points, by a few rounds of Gilbert, An Iterative Procedure for Computing the Minimum of
- * a Quadratic Form on a Convex Set, 1966: d is a point of the difference B - A, drawn towards the origin. */
+/* Vertices near to the closest points. How far apart the bodies are along a unit direction n is n.w, w being the way
+ * from A's vertex furthest along n to B's furthest against it. That is concave in n, its greatest value the distance,
+ * and w its gradient: n + w / r, brought back to unit length, climbs it. With r the sum of both radii the first step
+ * goes all the way for balls; a step that leads down was too long. */
 static void start(walk *w) {
-    tl_d3 d = tl_d_sub(tl_frame_point(w->frame, w->body[1]->center), w->body[0]->center);
+    const tl_polytope *a = w->body[0], *b = w->body[1];
+    double radius = (double)a->size + (double)b->size, most = -1e300;
+    tl_d3 n = tl_d_sub(tl_frame_point(w->frame, b->center), a->center), best = n, way = n;
     uint32_t ia = 0u, ib = 0u;
+    n = unit_or(n, tl_d(0.0, 1.0, 0.0));
     for (int round = 0; round < START_ROUNDS; ++round) {
-        ia = tl_polytope_support(w->body[0], d, ia, round > 0);
-        ib = tl_polytope_support(w->body[1], tl_frame_turn_back(w->frame, tl_d_scale(d, -1.0)), ib, round > 0);
-        tl_d3 to = tl_d_sub(tl_frame_point(w->frame, vertex(w, 1, ib)), vertex(w, 0, ia)), along = tl_d_sub(to, d);
-        double gain = -tl_d_dot(d, along), length = tl_d_dot(along, along);
-        if (gain <= START_GAIN * tl_d_dot(d, d)) {
+        uint32_t ja = tl_polytope_seed(a, n);
+        uint32_t jb = tl_polytope_seed(b, tl_frame_turn_back(w->frame, tl_d_scale(n, -1.0)));
+        tl_d3 to = tl_d_sub(tl_frame_point(w->frame, vertex(w, 1, jb)), vertex(w, 0, ja));
+        double apart = tl_d_dot(n, to);
+        int again = round > 0 && ja == ia && jb == ib;
+        if (apart > most) {
+            most = apart, best = n, way = to, ia = ja, ib = jb;
+        } else {
+            radius *= START_SHORTER;
+        }
+        if (again) {
             break;
         }
-        d = gain >= length ? to : tl_d_add(d, tl_d_scale(along, gain / length));
+        n = unit_or(tl_d_add(tl_d_scale(best, radius), way), best);
     }
+    ia = tl_polytope_near(a, best, ia);
+    ib = tl_polytope_near(b, tl_frame_turn_back(w->frame, tl_d_scale(best, -1.0)), ib);
     w->at[0] = make(TL_FEATURE_VERTEX, ia);
     w->at[1] = make(TL_FEATURE_VERTEX, ib);
 }
