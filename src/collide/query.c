@@ -79,11 +79,11 @@ static talus_status place(const talus_convex *a, const talus_pose *pose_a, const
             return status;
         }
     }
+    tl_frame frame_a = tl_frame_of(pose_a), frame_b = tl_frame_of(pose_b);
+    p->frame = frame_a;
+    p->b_in_a = tl_frame_between(&frame_a, &frame_b);
     tl_polytope_init(&p->a, a);
     tl_polytope_init(&p->b, b);
-    tl_frame frame_b = tl_frame_of(pose_b);
-    p->frame = tl_frame_of(pose_a);
-    p->b_in_a = tl_frame_between(&p->frame, &frame_b);
     p->features.a = features ? features->a : 0u;
     p->features.b = features ? features->b : 0u;
     return TALUS_OK;
@@ -101,14 +101,13 @@ talus_status talus_distance(const talus_convex *a, const talus_pose *pose_a, con
         return status;
     }
     tl_closest_find(&p.a, &p.b, &p.b_in_a, p.features, &c);
-    if (!c.apart) {
-        c.point_a = c.point_b = c.common;
-    }
-    out->distance = c.apart ? (float)c.gap : 0.0f;
+    double gap = c.apart ? c.gap : 0.0;
+    tl_d3 normal = tl_frame_turn(&p.frame, c.normal), point = tl_frame_point(&p.frame, c.apart ? c.point_a : c.common);
+    out->distance = (float)gap;
     out->overlap = !c.apart;
-    out->normal = vector_out(&p, c.normal);
-    out->point_a = point_out(&p, c.point_a);
-    out->point_b = point_out(&p, c.point_b);
+    out->normal = tl_d_round(normal);
+    out->point_a = tl_d_round(point);
+    out->point_b = tl_d_round(tl_d_add(point, tl_d_scale(normal, gap)));
     out->steps = c.steps;
     out->gave_up = c.gave_up;
     if (features) {

@@ -470,9 +470,9 @@ void tl_closest_find(const tl_polytope *a, const tl_polytope *b, const tl_frame 
         (w.at[0].kind == TL_FEATURE_FACE && w.at[1].kind == TL_FEATURE_FACE)) {
         start(&w);
     }
-    int state = step(&w);
-    while (state == STEP && ++out->steps < MAX_STEPS) {
-        state = step(&w);
+    int state;
+    while ((state = step(&w)) == STEP && out->steps < MAX_STEPS) {
+        ++out->steps;
     }
     if (state != DONE) {
         out->gave_up = 1u;
