@@ -47,7 +47,7 @@ typedef struct clip {
 
 enum { STEP, DONE, DOUBT };
 
-static tl_d3 across(const walk *w, int to, tl_d3 p) {
+static inline tl_d3 across(const walk *w, int to, tl_d3 p) {
     return to ? tl_frame_point_back(w->frame, p) : tl_frame_point(w->frame, p);
 }
 
@@ -124,7 +124,7 @@ static uint32_t leave_vertex(const tl_polytope *b, uint32_t i, tl_d3 d) {
 }
 
 /* The root of a square of lengths and what it divides by, to 1e-14 of themselves. */
-static double root(double x, double *inverse) {
+static inline double root(double x, double *inverse) {
     if (x < 1e-30 || x > 1e30) {
         double y = tl_d_sqrt(x);
         *inverse = 1.0 / y;
@@ -147,7 +147,7 @@ static tl_d3 unit_or(tl_d3 v, tl_d3 otherwise) {
  * Whether they are as far apart along the normal as the features are is looked at once more. In exact arithmetic they
  * always are, and what is asked of a vertex and of a face to end there is just that; of an edge the normals of its
  * faces are asked, which for slivers are off. */
-static int end(walk *w, tl_d3 p, tl_d3 q, tl_d3 d, double out) {
+static inline int end(walk *w, tl_d3 p, tl_d3 q, tl_d3 d, double out) {
     tl_closest *c = w->out;
     double size = (double)w->body[0]->size + (double)w->body[1]->size, inverse, square = tl_d_dot(d, d);
     tl_d3 reach = tl_d_sub(p, w->body[0]->center);
@@ -200,7 +200,7 @@ static feature leave_wedge(const tl_polytope *b, uint32_t e, tl_d3 u, tl_d3 d) {
     return make(0u, 0u);
 }
 
-static int vertex_edge(walk *w, int side) {
+static inline int vertex_edge(walk *w, int side) {
     const tl_polytope *own = w->body[side], *other = w->body[!side];
     uint32_t i = w->at[side].index, e = w->at[!side].index, t = tail_of(w, !side, e), h = head_of(w, !side, e);
     tl_d3 v = vertex(w, side, i), p = across(w, !side, v), tail = vertex(w, !side, t);
@@ -321,7 +321,7 @@ static int end_over_face(walk *w, int side, tl_d3 p, tl_d3 n, double height) {
     return DONE;
 }
 
-static int vertex_face(walk *w, int side) {
+static inline int vertex_face(walk *w, int side) {
     const tl_polytope *b = w->body[!side];
     uint32_t face = w->at[!side].index, first = b->face_edge[face], k = first, i = w->at[side].index;
     uint32_t outside = 0u, last = 0u;
@@ -359,16 +359,19 @@ static int vertex_face(walk *w, int side) {
     return go(w, !side, make(TL_FEATURE_FACE, seen));
 }
 
+/* Each side by itself: what is known when it is compiled is not asked on the way. */
 static int step(walk *w) {
     uint32_t a = w->at[0].kind, b = w->at[1].kind;
-    if (a == TL_FEATURE_FACE || b == TL_FEATURE_FACE) {
-        int side = a == TL_FEATURE_FACE; /* of what is no face */
-        return w->at[side].kind == TL_FEATURE_VERTEX ? vertex_face(w, side) : edge_face(w, side);
+    if (a == TL_FEATURE_FACE) {
+        return b == TL_FEATURE_VERTEX ? vertex_face(w, 1) : edge_face(w, 1);
     }
-    if (a == TL_FEATURE_EDGE && b == TL_FEATURE_EDGE) {
-        return edge_edge(w);
+    if (b == TL_FEATURE_FACE) {
+        return a == TL_FEATURE_VERTEX ? vertex_face(w, 0) : edge_face(w, 0);
     }
-    return a == b ? vertex_vertex(w) : vertex_edge(w, a == TL_FEATURE_EDGE);
+    if (a == TL_FEATURE_EDGE) {
+        return b == TL_FEATURE_EDGE ? edge_edge(w) : vertex_edge(w, 1);
+    }
+    return b == TL_FEATURE_EDGE ? vertex_edge(w, 0) : vertex_vertex(w);
 }
 
 static uint32_t pack(feature f) { return TL_FEATURE(f.kind, f.index); }
