@@ -69,28 +69,36 @@ static int supports(const tl_polytope *p, uint32_t vertex, tl_d3 direction) {
     return 1;
 }
 
-/* The faces around a vertex of one side, against the other side's vertex. */
-static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
+/* The depth that the best is to be undercut by, and what normals are rounded by. */
+static double bar(const tl_gauss_depth *best) { return worth(best) * (1.0 + 1e-6); }
+
+/* The faces around a vertex of one side, against the other side's vertex. *less is set to whether along any of their
+ * normals p is less high than the best: if it is along none, it is not along what lies between them either, which is a
+ * sum of them with weights that add to 1 or more. What has no faces has all directions between them. */
+static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl_d3 p, int *less,
+                     tl_gauss_depth *best) {
     const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
     uint32_t first = s->vertex_edge[side ? ib : ia], e = first;
+    tl_d3 seen = side ? tl_frame_turn_back(pair->frame, tl_d_scale(p, -1.0)) : p;
     int better = 0;
+    *less = s->face_count == 0u;
     if (s->face_count == 0u) {
         return 0;
     }
     do {
         uint32_t face = s->edges[e].face;
         tl_d3 n = tl_polytope_normal(s, face);
-        n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
-        if (!may_be_less(n, p, worth(best))) {
-            e = s->edges[tl_hull_twin(e)].next;
+        e = s->edges[tl_hull_twin(e)].next;
+        if (!may_be_less(n, seen, bar(best))) {
             continue;
         }
+        *less = 1;
+        n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
         if (supports(other, side ? ia : ib, side ? n : tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)))) {
             better |= try_direction(pair, n, ia, ib,
                                     side ? TL_FEATURE(TL_FEATURE_VERTEX, ia) : TL_FEATURE(TL_FEATURE_FACE, face),
                                     side ? TL_FEATURE(TL_FEATURE_FACE, face) : TL_FEATURE(TL_FEATURE_VERTEX, ib), best);
         }
-        e = s->edges[tl_hull_twin(e)].next;
     } while (e != first);
     return better;
 }
@@ -194,9 +202,11 @@ static int try_edges(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_d3 p, tl_
 
 static int try_cell(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_gauss_depth *best) {
     tl_d3 p = tl_d_sub(tl_polytope_vertex(pair->a, ia), tl_frame_point(pair->frame, tl_polytope_vertex(pair->b, ib)));
-    int better = try_faces(pair, 0, ia, ib, p, best);
-    better |= try_faces(pair, 1, ia, ib, p, best);
-    return better | try_edges(pair, ia, ib, p, best);
+    int less, better = try_faces(pair, 0, ia, ib, p, &less, best);
+    if (less) {
+        better |= try_faces(pair, 1, ia, ib, p, &less, best);
+    }
+    return less ? better | try_edges(pair, ia, ib, p, best) : better;
 }
 
 /* The corners of a feature one after the other: the first, and after *at the next, 0 at the end. */
@@ -263,19 +273,51 @@ static int try_arc(tl_gauss_pair *pair, int side, uint32_t e, uint32_t i, tl_gau
     return better;
 }
 
+/* The height of corner i of one side against corner k of the other along the normal of a face of the first: whether it
+ * may be less than the best, by its square. */
+static int is_lower(const tl_gauss_pair *pair, int side, uint32_t face, uint32_t i, uint32_t k, double *height,
+                    const tl_gauss_depth *best) {
+    const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
+    tl_d3 n = tl_polytope_normal(s, face), v = tl_polytope_vertex(other, k);
+    v = side ? tl_frame_point_back(pair->frame, v) : tl_frame_point(pair->frame, v);
+    v = tl_d_sub(tl_polytope_vertex(s, i), v);
+    *height = tl_d_dot(n, v);
+    return may_be_less(n, v, bar(best));
+}
+
+/* From the crossing of two edges' arcs along that of e, which is one of `side`, both ways: the arc towards a face lies
+ * in the cell of the end of f that is further against its normal. Along it the depth is concave: where it is not less
+ * at the face, it is not on the way. */
+static int try_both_ways(tl_gauss_pair *pair, int side, uint32_t e, uint32_t f, tl_gauss_depth *best) {
+    const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
+    uint32_t ends[2] = {other->edges[f].origin, other->edges[f ^ 1u].origin};
+    int lower[2] = {0, 0};
+    for (uint32_t k = 0; k < 2u && s->face_count > 0u; ++k) {
+        double height[2];
+        int low[2];
+        for (int i = 0; i < 2; ++i) {
+            low[i] = is_lower(pair, side, s->edges[e ^ k].face, s->edges[e].origin, ends[i], &height[i], best);
+        }
+        int far = height[1] > height[0];
+        lower[far] |= low[far];
+    }
+    return ((lower[0] || s->face_count == 0u) && try_arc(pair, side, e, ends[0], best)) ||
+           ((lower[1] || s->face_count == 0u) && try_arc(pair, side, e, ends[1], best));
+}
+
 /* The corners of the overlay next to that of the features, along the arcs that meet there. */
 static int try_neighbours(tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_gauss_depth *best) {
-    const tl_polytope *a = pair->a, *b = pair->b;
     uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
     if (TL_FEATURE_KIND(fa) == TL_FEATURE_EDGE && TL_FEATURE_KIND(fb) == TL_FEATURE_EDGE) {
-        return try_arc(pair, 0, e, b->edges[f].origin, best) || try_arc(pair, 0, e, b->edges[f ^ 1u].origin, best) ||
-               try_arc(pair, 1, f, a->edges[e].origin, best) || try_arc(pair, 1, f, a->edges[e ^ 1u].origin, best);
+        return try_both_ways(pair, 0, e, f, best) || try_both_ways(pair, 1, f, e, best);
     }
     int side = TL_FEATURE_KIND(fb) == TL_FEATURE_FACE, better = 0;
-    const tl_polytope *s = side ? b : a;
-    uint32_t first = s->face_edge[side ? f : e], k = first;
+    const tl_polytope *s = side ? pair->b : pair->a;
+    uint32_t first = s->face_edge[side ? f : e], k = first, i = side ? e : f;
+    double height;
     do {
-        better = try_arc(pair, side, k, side ? e : f, best);
+        better = is_lower(pair, side, s->edges[k ^ 1u].face, s->edges[k].origin, i, &height, best) &&
+                 try_arc(pair, side, k, i, best);
         k = s->edges[k].next;
     } while (!better && k != first);
     return better;
