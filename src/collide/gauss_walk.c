@@ -405,8 +405,8 @@ void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_d
     } else {
         n = by_expansion(pair);
         tl_d3 back = tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0));
-        ia = tl_polytope_near(pair->a, n, tl_polytope_seed(pair->a, n));
-        ib = tl_polytope_near(pair->b, back, tl_polytope_seed(pair->b, back));
+        ia = tl_polytope_near(pair->a, n, 0u);
+        ib = tl_polytope_near(pair->b, back, 0u);
     }
     tl_gauss_look(pair, tl_d_scale(n, 1.0 / tl_d_length(n)), ia, ib, out);
     if (known) {

@@ -102,7 +102,7 @@ uint32_t tl_polytope_seed(const tl_polytope *p, tl_d3 direction) {
     if (p->shape->geometry.type != TALUS_HULL) {
         return tl_polytope_support(p, direction, 0u);
     }
-    return h->squares ? tl_hull_seed(h, d) : tl_hull_support(h, d, 0u);
+    return h->squares > 0u ? tl_hull_seed(h, d) : tl_hull_support(h, d, 0u);
 }
 
 uint32_t tl_polytope_near(const tl_polytope *p, tl_d3 direction, uint32_t start) {

@@ -80,7 +80,8 @@ static uint32_t scan(const talus_hull *hull, talus_vec3 d) {
 
 uint32_t tl_hull_support(const talus_hull *hull, talus_vec3 direction, uint32_t start) {
     if (hull->vertex_count > TL_HULL_SCANNED) {
-        return tl_hull_climb(hull, direction, start < hull->vertex_count ? start : 0u);
+        int known = start > 0u && start < hull->vertex_count;
+        return tl_hull_climb(hull, direction, known ? start : tl_hull_seed(hull, direction));
     }
     return scan(hull, direction);
 }
