@@ -1,3 +1,5 @@
+/* Climbs from vertex to neighbour (van den Bergen, Collision Detection in Interactive 3D Environments, 4.3.4) and the
+ * table that they begin at: the furthest vertex along the middle of each square of a cube. */
 #include "geom/hull_climb.h"
 
 uint32_t tl_hull_squares(uint32_t vertex_count) {
