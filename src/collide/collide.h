@@ -3,15 +3,12 @@
 #define TL_COLLIDE_H
 
 #include "geom/hull.h"
-#include "talus/shape.h"
+#include "talus/query.h"
 
 #define TL_MANIFOLD_POINTS 4
 
 /* A shape's geometry with its hull found (null unless the type is TALUS_HULL). */
-typedef struct tl_convex {
-    talus_geometry geometry;
-    const talus_hull *hull;
-} tl_convex;
+typedef talus_convex tl_convex;
 
 typedef struct tl_manifold_point {
     talus_vec3 position; /* m, in A's frame: midway between the two surfaces */

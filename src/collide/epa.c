@@ -72,8 +72,7 @@ static void store(polytope *p, uint32_t i, const tl_simplex_vertex *v) {
 /* The point of B - A that is furthest along m, into slot `i`, and the bound that it sets on the depth. */
 static float support(polytope *p, talus_vec3 m, uint32_t i) {
     tl_simplex_vertex v;
-    v.ia = p->vertex_count > 0 ? p->vertex[0].ia : 0u;
-    v.ib = p->vertex_count > 0 ? p->vertex[0].ib : 0u;
+    v.ia = v.ib = 0u;
     talus_vec3 n = tl_neg(m);
     float apart = tl_core_separation(p->a, p->b, n, &v.ia, &v.ib, &v.a, &v.b);
     store(p, i, &v);

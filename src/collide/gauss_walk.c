@@ -17,8 +17,8 @@
 void tl_gauss_look(tl_gauss_pair *pair, tl_d3 n, uint32_t ia, uint32_t ib, tl_gauss_depth *out) {
     const tl_polytope *a = pair->a, *b = pair->b;
     out->n = n;
-    out->ia = tl_polytope_support(a, n, ia, 1);
-    out->ib = tl_polytope_support(b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), ib, 1);
+    out->ia = tl_polytope_support(a, n, ia);
+    out->ib = tl_polytope_support(b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), ib);
     out->p = tl_d_sub(tl_polytope_vertex(a, out->ia), tl_frame_point(pair->frame, tl_polytope_vertex(b, out->ib)));
     out->value = tl_d_dot(n, out->p);
     out->feature_a = TL_FEATURE(TL_FEATURE_VERTEX, out->ia);
@@ -69,111 +69,144 @@ static int supports(const tl_polytope *p, uint32_t vertex, tl_d3 direction) {
     return 1;
 }
 
-/* The faces around a vertex of one side, against the other side's vertex. */
-static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
+/* The depth that the best is to be undercut by, and what normals are rounded by. */
+static double bar(const tl_gauss_depth *best) { return worth(best) * (1.0 + 1e-6); }
+
+/* The faces around a vertex of one side, against the other side's vertex. *less is set to whether along any of their
+ * normals p is less high than the best: if it is along none, it is not along what lies between them either, which is a
+ * sum of them with weights that add to 1 or more. What has no faces has all directions between them. */
+static int try_faces(tl_gauss_pair *pair, int side, uint32_t ia, uint32_t ib, tl_d3 p, int *less,
+                     tl_gauss_depth *best) {
     const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
     uint32_t first = s->vertex_edge[side ? ib : ia], e = first;
+    tl_d3 seen = side ? tl_frame_turn_back(pair->frame, tl_d_scale(p, -1.0)) : p;
     int better = 0;
+    *less = s->face_count == 0u;
     if (s->face_count == 0u) {
         return 0;
     }
     do {
         uint32_t face = s->edges[e].face;
         tl_d3 n = tl_polytope_normal(s, face);
-        n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
-        if (!may_be_less(n, p, worth(best))) {
-            e = s->edges[tl_hull_twin(e)].next;
+        e = s->edges[tl_hull_twin(e)].next;
+        if (!may_be_less(n, seen, bar(best))) {
             continue;
         }
+        *less = 1;
+        n = side ? tl_d_scale(tl_frame_turn(pair->frame, n), -1.0) : n;
         if (supports(other, side ? ia : ib, side ? n : tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)))) {
             better |= try_direction(pair, n, ia, ib,
                                     side ? TL_FEATURE(TL_FEATURE_VERTEX, ia) : TL_FEATURE(TL_FEATURE_FACE, face),
                                     side ? TL_FEATURE(TL_FEATURE_FACE, face) : TL_FEATURE(TL_FEATURE_VERTEX, ib), best);
         }
-        e = s->edges[tl_hull_twin(e)].next;
     } while (e != first);
     return better;
 }
 
-/* An edge away from a vertex, in B's frame: its direction and the normals on its left and right. */
-typedef struct fan_edge {
-    uint32_t index;
-    tl_d3 u, left, right;
-} fan_edge;
-
-static fan_edge edge_of(const tl_polytope *p, uint32_t e) {
-    fan_edge s = {e, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-    s.u = tl_d_sub(tl_polytope_vertex(p, p->edges[e ^ 1u].origin), tl_polytope_vertex(p, p->edges[e].origin));
-    if (p->face_count > 0u) {
-        s.left = tl_polytope_normal(p, p->edges[e].face);
-        s.right = tl_polytope_normal(p, p->edges[e ^ 1u].face);
-    }
-    return s;
+/* The outward normal of the face left of a half-edge; 0 of what has no faces. */
+static tl_d3 left_of(const tl_polytope *p, uint32_t e) {
+    return p->face_count > 0u ? tl_polytope_normal(p, p->edges[e].face) : tl_d(0.0, 0.0, 0.0);
 }
 
-static void turn_edge(const tl_frame *frame, fan_edge *s) {
-    s->u = tl_frame_turn_back(frame, s->u);
-    s->left = tl_frame_turn_back(frame, s->left);
-    s->right = tl_frame_turn_back(frame, s->right);
+static tl_d3 along(const tl_polytope *p, uint32_t e) {
+    return tl_d_sub(tl_polytope_vertex(p, p->edges[e ^ 1u].origin), tl_polytope_vertex(p, p->edges[e].origin));
 }
 
-/* The normal of an edge of A and one of B if their arcs cross, pointing from A to B. What has no faces has normals of
- * 0, and its arc goes all around. */
-static int crossing(const fan_edge *a, const fan_edge *b, tl_d3 *n) {
-    double near_left = tl_d_dot(a->left, b->u), near_right = tl_d_dot(a->right, b->u);
-    double left = tl_d_dot(b->left, a->u), right = tl_d_dot(b->right, a->u);
-    /* The arcs' planes cross in two opposite places; one of them must be on both. One branch, for each of these by
-     * itself is a toss of a coin. */
-    if ((near_left * near_right > 0.0) | (left * right > 0.0) | (left * near_right > 0.0) | (right * near_left > 0.0)) {
+/* Whether the arcs of two edges cross: given each one's direction times the normals on the left and right of the other.
+ * The arcs' planes cross in two opposite places; one of them must be on both. What has no faces has normals of 0, and
+ * its arc goes all around. One branch, for each of these by itself is a toss of a coin. */
+static int arcs_cross(double left, double right, double other_left, double other_right) {
+    return !((left * right > 0.0) | (other_left * other_right > 0.0) | (left * other_right > 0.0) |
+             (right * other_left > 0.0));
+}
+
+/* An edge of A and one of B whose arcs cross, u and v long, offer the normal of both that points from A to B: u, v and
+ * `outward`, the sum of A's normals less that of B's, are seen from B as `seen` is. */
+static int try_crossing(tl_gauss_pair *pair, uint32_t e, uint32_t f, tl_d3 u, tl_d3 v, tl_d3 outward, tl_d3 seen,
+                        tl_gauss_depth *best) {
+    tl_d3 n = tl_d_cross(u, v);
+    if (!(tl_d_dot(n, n) > PARALLEL * tl_d_dot(u, u) * tl_d_dot(v, v))) {
         return 0;
     }
-    *n = tl_d_cross(a->u, b->u);
-    if (!(tl_d_dot(*n, *n) > PARALLEL * tl_d_dot(a->u, a->u) * tl_d_dot(b->u, b->u))) {
-        return 0;
+    n = tl_d_scale(n, tl_d_dot(n, outward) < 0.0 ? -1.0 : 1.0);
+    return may_be_less(n, seen, worth(best)) &&
+           try_direction(pair, tl_frame_turn(pair->frame, n), pair->a->edges[e].origin, pair->b->edges[f].origin,
+                         TL_FEATURE(TL_FEATURE_EDGE, e), TL_FEATURE(TL_FEATURE_EDGE, f), best);
+}
+
+/* Up to FAN edges away from a vertex of B, one after the other: normal i and i + 1 are left and right of edge i. */
+typedef struct fan {
+    uint32_t count, edge[FAN];
+    tl_d3 u[FAN], normal[FAN + 1];
+} fan;
+
+/* From the half-edge f on until `first` comes again; returns where the next fan starts. */
+static uint32_t lay_out(const tl_polytope *p, uint32_t f, uint32_t first, fan *out) {
+    out->count = 0u;
+    out->normal[0] = left_of(p, f);
+    do {
+        uint32_t twin = tl_hull_twin(f);
+        out->edge[out->count] = f;
+        out->u[out->count++] = along(p, f);
+        out->normal[out->count] = left_of(p, twin);
+        f = p->edges[twin].next;
+    } while (f != first && out->count < FAN);
+    return f;
+}
+
+/* The crossings of the edges around a vertex of A with those of a fan of B. */
+static int try_fan(tl_gauss_pair *pair, const fan *b, uint32_t first, tl_d3 seen, tl_gauss_depth *best) {
+    const tl_polytope *a = pair->a;
+    double left[FAN], right[FAN];
+    uint32_t e = first;
+    tl_d3 m = tl_frame_turn_back(pair->frame, left_of(a, e));
+    int better = 0;
+    for (uint32_t k = 0; k < b->count; ++k) {
+        left[k] = tl_d_dot(m, b->u[k]);
     }
-    tl_d3 outward = tl_d_sub(tl_d_add(a->left, a->right), tl_d_add(b->left, b->right));
-    if (tl_d_dot(*n, outward) < 0.0) {
-        *n = tl_d_scale(*n, -1.0);
-    }
-    return 1;
+    do {
+        tl_d3 u = tl_frame_turn_back(pair->frame, along(a, e)), before = m;
+        uint32_t twin = tl_hull_twin(e);
+        m = tl_frame_turn_back(pair->frame, left_of(a, twin));
+        double on_left = tl_d_dot(u, b->normal[0]);
+        for (uint32_t k = 0; k < b->count; ++k) {
+            double on_right = tl_d_dot(u, b->normal[k + 1u]);
+            right[k] = tl_d_dot(m, b->u[k]);
+            if (arcs_cross(left[k], right[k], on_left, on_right)) {
+                tl_d3 outward = tl_d_sub(tl_d_add(before, m), tl_d_add(b->normal[k], b->normal[k + 1u]));
+                better |= try_crossing(pair, e, b->edge[k], u, b->u[k], outward, seen, best);
+            }
+            left[k] = right[k];
+            on_left = on_right;
+        }
+        e = a->edges[twin].next;
+    } while (e != first);
+    return better;
 }
 
 /* The crossings of the edges around a vertex of A with those around one of B. */
 static int try_edges(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_d3 p, tl_gauss_depth *best) {
-    const tl_polytope *a = pair->a, *b = pair->b;
-    uint32_t first_a = a->vertex_edge[ia], first_b = b->vertex_edge[ib], e = first_a, f = first_b;
-    tl_d3 n, seen = tl_frame_turn_back(pair->frame, p);
+    uint32_t first_a = pair->a->vertex_edge[ia], first_b = pair->b->vertex_edge[ib], f = first_b;
+    tl_d3 seen = tl_frame_turn_back(pair->frame, p);
     int better = 0;
     if (first_a == TL_NO_FEATURE || first_b == TL_NO_FEATURE) {
         return 0;
     }
     do {
-        fan_edge fan[FAN];
-        uint32_t count = 0u;
-        do {
-            fan[count++] = edge_of(b, f);
-            f = b->edges[tl_hull_twin(f)].next;
-        } while (f != first_b && count < FAN);
-        do {
-            fan_edge s = edge_of(a, e);
-            turn_edge(pair->frame, &s);
-            for (uint32_t k = 0; k < count; ++k) {
-                if (crossing(&s, &fan[k], &n) && may_be_less(n, seen, worth(best))) {
-                    better |= try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, e),
-                                            TL_FEATURE(TL_FEATURE_EDGE, fan[k].index), best);
-                }
-            }
-            e = a->edges[tl_hull_twin(e)].next;
-        } while (e != first_a);
+        fan b;
+        f = lay_out(pair->b, f, first_b, &b);
+        better |= try_fan(pair, &b, first_a, seen, best);
     } while (f != first_b);
     return better;
 }
 
 static int try_cell(tl_gauss_pair *pair, uint32_t ia, uint32_t ib, tl_gauss_depth *best) {
     tl_d3 p = tl_d_sub(tl_polytope_vertex(pair->a, ia), tl_frame_point(pair->frame, tl_polytope_vertex(pair->b, ib)));
-    int better = try_faces(pair, 0, ia, ib, p, best);
-    better |= try_faces(pair, 1, ia, ib, p, best);
-    return better | try_edges(pair, ia, ib, p, best);
+    int less, better = try_faces(pair, 0, ia, ib, p, &less, best);
+    if (less) {
+        better |= try_faces(pair, 1, ia, ib, p, &less, best);
+    }
+    return less ? better | try_edges(pair, ia, ib, p, best) : better;
 }
 
 /* The corners of a feature one after the other: the first, and after *at the next, 0 at the end. */
@@ -191,6 +224,11 @@ static int corner(const tl_polytope *p, uint32_t feature, uint32_t turn, uint32_
         *vertex = i;
         return turn == 0u;
     }
+}
+
+static tl_d3 turn_back(const tl_gauss_pair *pair, tl_d3 v) { return tl_frame_turn_back(pair->frame, v); }
+static tl_d3 turn_to(const tl_gauss_pair *pair, int a, tl_d3 v) {
+    return a ? tl_frame_turn(pair->frame, v) : tl_frame_turn_back(pair->frame, v);
 }
 
 /* Where the arc of A's half-edge e leads from the corners of the overlay on it, within the cell of B's vertex ib: to
@@ -212,42 +250,74 @@ static int try_arc(tl_gauss_pair *pair, int side, uint32_t e, uint32_t i, tl_gau
         }
     }
     uint32_t first = other->vertex_edge[i], f = first;
-    fan_edge own = edge_of(s, e);
-    tl_d3 n, seen = tl_frame_turn_back(pair->frame, p);
-    if (!side) {
-        turn_edge(pair->frame, &own);
-    }
     if (first == TL_NO_FEATURE) {
         return better;
     }
+    /* what is seen from B with side 0 and from A with side 1: from where the other one's edges are */
+    tl_d3 u = turn_to(pair, side, along(s, e)), left = turn_to(pair, side, left_of(s, e));
+    tl_d3 right = turn_to(pair, side, left_of(s, tl_hull_twin(e)));
+    double on_left = tl_d_dot(u, left_of(other, f));
     do {
-        fan_edge across = edge_of(other, f);
-        if (side) {
-            turn_edge(pair->frame, &across);
+        uint32_t twin = tl_hull_twin(f);
+        tl_d3 v = along(other, f);
+        double on_right = tl_d_dot(u, left_of(other, twin));
+        if (arcs_cross(tl_d_dot(left, v), tl_d_dot(right, v), on_left, on_right)) {
+            tl_d3 outward = tl_d_sub(tl_d_add(left, right), tl_d_add(left_of(other, f), left_of(other, twin)));
+            better |= side ? try_crossing(pair, f, e, turn_back(pair, v), turn_back(pair, u),
+                                          turn_back(pair, tl_d_scale(outward, -1.0)), turn_back(pair, p), best)
+                           : try_crossing(pair, e, f, u, v, outward, turn_back(pair, p), best);
         }
-        if (crossing(side ? &across : &own, side ? &own : &across, &n) && may_be_less(n, seen, worth(best))) {
-            better |=
-                try_direction(pair, tl_frame_turn(pair->frame, n), ia, ib, TL_FEATURE(TL_FEATURE_EDGE, side ? f : e),
-                              TL_FEATURE(TL_FEATURE_EDGE, side ? e : f), best);
-        }
-        f = other->edges[tl_hull_twin(f)].next;
+        on_left = on_right;
+        f = other->edges[twin].next;
     } while (f != first);
     return better;
 }
 
+/* The height of corner i of one side against corner k of the other along the normal of a face of the first: whether it
+ * may be less than the best, by its square. */
+static int is_lower(const tl_gauss_pair *pair, int side, uint32_t face, uint32_t i, uint32_t k, double *height,
+                    const tl_gauss_depth *best) {
+    const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
+    tl_d3 n = tl_polytope_normal(s, face), v = tl_polytope_vertex(other, k);
+    v = side ? tl_frame_point_back(pair->frame, v) : tl_frame_point(pair->frame, v);
+    v = tl_d_sub(tl_polytope_vertex(s, i), v);
+    *height = tl_d_dot(n, v);
+    return may_be_less(n, v, bar(best));
+}
+
+/* From the crossing of two edges' arcs along that of e, which is one of `side`, both ways: the arc towards a face lies
+ * in the cell of the end of f that is further against its normal. Along it the depth is concave: where it is not less
+ * at the face, it is not on the way. */
+static int try_both_ways(tl_gauss_pair *pair, int side, uint32_t e, uint32_t f, tl_gauss_depth *best) {
+    const tl_polytope *s = side ? pair->b : pair->a, *other = side ? pair->a : pair->b;
+    uint32_t ends[2] = {other->edges[f].origin, other->edges[f ^ 1u].origin};
+    int lower[2] = {0, 0};
+    for (uint32_t k = 0; k < 2u && s->face_count > 0u; ++k) {
+        double height[2];
+        int low[2];
+        for (int i = 0; i < 2; ++i) {
+            low[i] = is_lower(pair, side, s->edges[e ^ k].face, s->edges[e].origin, ends[i], &height[i], best);
+        }
+        int far = height[1] > height[0];
+        lower[far] |= low[far];
+    }
+    return ((lower[0] || s->face_count == 0u) && try_arc(pair, side, e, ends[0], best)) ||
+           ((lower[1] || s->face_count == 0u) && try_arc(pair, side, e, ends[1], best));
+}
+
 /* The corners of the overlay next to that of the features, along the arcs that meet there. */
 static int try_neighbours(tl_gauss_pair *pair, uint32_t fa, uint32_t fb, tl_gauss_depth *best) {
-    const tl_polytope *a = pair->a, *b = pair->b;
     uint32_t e = TL_FEATURE_INDEX(fa), f = TL_FEATURE_INDEX(fb);
     if (TL_FEATURE_KIND(fa) == TL_FEATURE_EDGE && TL_FEATURE_KIND(fb) == TL_FEATURE_EDGE) {
-        return try_arc(pair, 0, e, b->edges[f].origin, best) || try_arc(pair, 0, e, b->edges[f ^ 1u].origin, best) ||
-               try_arc(pair, 1, f, a->edges[e].origin, best) || try_arc(pair, 1, f, a->edges[e ^ 1u].origin, best);
+        return try_both_ways(pair, 0, e, f, best) || try_both_ways(pair, 1, f, e, best);
     }
     int side = TL_FEATURE_KIND(fb) == TL_FEATURE_FACE, better = 0;
-    const tl_polytope *s = side ? b : a;
-    uint32_t first = s->face_edge[side ? f : e], k = first;
+    const tl_polytope *s = side ? pair->b : pair->a;
+    uint32_t first = s->face_edge[side ? f : e], k = first, i = side ? e : f;
+    double height;
     do {
-        better = try_arc(pair, side, k, side ? e : f, best);
+        better = is_lower(pair, side, s->edges[k ^ 1u].face, s->edges[k].origin, i, &height, best) &&
+                 try_arc(pair, side, k, i, best);
         k = s->edges[k].next;
     } while (!better && k != first);
     return better;
@@ -334,8 +404,9 @@ void tl_gauss_start(tl_gauss_pair *pair, talus_feature_pair features, tl_gauss_d
         (void)corner(pair->b, features.b, 0u, &at, &ib);
     } else {
         n = by_expansion(pair);
-        ia = tl_polytope_support(pair->a, n, 0u, 0);
-        ib = tl_polytope_support(pair->b, tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0)), 0u, 0);
+        tl_d3 back = tl_frame_turn_back(pair->frame, tl_d_scale(n, -1.0));
+        ia = tl_polytope_near(pair->a, n, 0u);
+        ib = tl_polytope_near(pair->b, back, 0u);
     }
     tl_gauss_look(pair, tl_d_scale(n, 1.0 / tl_d_length(n)), ia, ib, out);
     if (known) {

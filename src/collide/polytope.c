@@ -1,7 +1,8 @@
 /* Features and support vertices of what has flat sides, frames, and the distance of segments. Metres. */
 #include "collide/polytope.h"
 
-#define JUMPS 32u /* vertices looked at before a climb: about the cube root of the largest hull, and a few more */
+#include "collide/support.h"
+#include "geom/hull_climb.h"
 
 /* Corner i is at +x if its bit 0 is set, +y bit 1, +z bit 2; the faces are -x +x -y +y -z +z. */
 static const tl_half_edge box_edges[24] = {{2, 4, 0, 0},  {17, 6, 5, 0}, {4, 6, 0, 0},  {20, 2, 3, 0}, {6, 2, 0, 0},
@@ -45,27 +46,15 @@ static void init_box(tl_polytope *p, talus_vec3 half) {
     p->size = tl_length(half);
 }
 
-static void init_hull(tl_polytope *p, const talus_hull *h) {
-    p->x = tl_hull_x(h), p->y = tl_hull_y(h), p->z = tl_hull_z(h);
-    p->nx = tl_hull_planes(h);
-    p->ny = p->nx + h->face_stride, p->nz = p->nx + 2u * h->face_stride, p->d = p->nx + 3u * h->face_stride;
-    p->edges = tl_hull_edges(h);
-    p->vertex_edge = tl_hull_vertex_edge(h);
-    p->face_edge = tl_hull_face_edge(h);
-    p->vertex_count = h->vertex_count, p->edge_count = h->half_edge_count, p->face_count = h->face_count;
-    p->radius = 0.0f;
-    p->size = h->outer_radius;
-    p->center = tl_d_from(h->centroid);
-}
-
 static void init_round(tl_polytope *p, const talus_geometry *g) {
     p->round = 1;
     p->radius = 0.0f;
     p->center = tl_d(0.0, 0.0, 0.0);
     p->size = g->half_height + tl_max(g->radius_top, g->radius_bottom);
+    p->vertex_count = p->edge_count = p->face_count = 0u;
 }
 
-void tl_polytope_init(tl_polytope *p, const tl_convex *shape) {
+void tl_polytope_init_plain(tl_polytope *p, const tl_convex *shape) {
     const talus_geometry *g = &shape->geometry;
     p->shape = shape;
     p->round = 0;
@@ -98,10 +87,8 @@ void tl_polytope_init(tl_polytope *p, const tl_convex *shape) {
     case TALUS_BOX:
         init_box(p, g->half);
         break;
-    case TALUS_HULL:
-        init_hull(p, shape->hull);
-        break;
     case TALUS_CYLINDER:
+    case TALUS_HULL:
     case TALUS_SHAPE_TYPE_COUNT:
     default:
         init_round(p, g);
@@ -109,49 +96,32 @@ void tl_polytope_init(tl_polytope *p, const tl_convex *shape) {
     }
 }
 
-int tl_polytope_has(const tl_polytope *p, uint32_t feature) {
-    switch (p->round ? 0u : TL_FEATURE_KIND(feature)) {
-    case TL_FEATURE_VERTEX:
-        return TL_FEATURE_INDEX(feature) < p->vertex_count;
-    case TL_FEATURE_EDGE:
-        return TL_FEATURE_INDEX(feature) < p->edge_count;
-    case TL_FEATURE_FACE:
-        return TL_FEATURE_INDEX(feature) < p->face_count;
-    default:
-        return 0;
+uint32_t tl_polytope_seed(const tl_polytope *p, tl_d3 direction) {
+    const talus_hull *h = p->shape->hull;
+    talus_vec3 d = tl_d_round(direction);
+    if (p->shape->geometry.type != TALUS_HULL) {
+        return tl_polytope_support(p, direction, 0u);
     }
+    return h->squares > 0u ? tl_hull_seed(h, d) : tl_hull_support(h, d, 0u);
 }
 
-tl_frame tl_frame_of(const talus_pose *pose) {
-    double x = (double)pose->rotation.x, y = (double)pose->rotation.y, z = (double)pose->rotation.z,
-           w = (double)pose->rotation.w;
-    double s = 2.0 / (x * x + y * y + z * z + w * w);
-    tl_frame f = {{1.0 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)},
-                  {s * (x * y - z * w), 1.0 - s * (x * x + z * z), s * (y * z + x * w)},
-                  {s * (x * z + y * w), s * (y * z - x * w), 1.0 - s * (x * x + y * y)},
-                  {(double)pose->position.x, (double)pose->position.y, (double)pose->position.z}};
-    return f;
+uint32_t tl_polytope_near(const tl_polytope *p, tl_d3 direction, uint32_t start) {
+    if (p->shape->geometry.type != TALUS_HULL) {
+        return tl_polytope_support(p, direction, start);
+    }
+    return tl_hull_support(p->shape->hull, tl_d_round(direction), start);
 }
 
-tl_frame tl_frame_between(const tl_frame *a, const tl_frame *b) {
-    tl_frame f = {tl_frame_turn_back(a, b->x), tl_frame_turn_back(a, b->y), tl_frame_turn_back(a, b->z),
-                  tl_frame_point_back(a, b->t)};
-    return f;
-}
-
-uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t v, int near_it) {
+uint32_t tl_polytope_support(const tl_polytope *p, tl_d3 direction, uint32_t v) {
     double best = tl_d_dot(direction, tl_polytope_vertex(p, v));
-    if (!near_it || p->vertex_count <= 8u) {
-        uint32_t stride = p->vertex_count > JUMPS ? p->vertex_count / JUMPS : 1u;
-        for (uint32_t i = 0; i < p->vertex_count; i += stride) {
+    if (p->vertex_count <= 8u) {
+        for (uint32_t i = 0; i < p->vertex_count; ++i) {
             double s = tl_d_dot(direction, tl_polytope_vertex(p, i));
             if (s > best) {
                 best = s, v = i;
             }
         }
-        if (stride == 1u) {
-            return v;
-        }
+        return v;
     }
     for (uint32_t steps = 0; steps < p->vertex_count; ++steps) {
         uint32_t first = p->vertex_edge[v], e = first, to = v;

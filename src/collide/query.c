@@ -26,6 +26,14 @@ static int within(talus_vec3 v) {
     return v.x <= TALUS_MAX_COORDINATE && v.y <= TALUS_MAX_COORDINATE && v.z <= TALUS_MAX_COORDINATE;
 }
 
+/* Enough for a pose to be sound, and false of what is not finite. */
+static inline int is_plain(const talus_pose *p) {
+    double x = (double)p->rotation.x, y = (double)p->rotation.y, z = (double)p->rotation.z, w = (double)p->rotation.w;
+    double turn = x * x + y * y + z * z + w * w, most = (double)TALUS_MAX_COORDINATE;
+    tl_d3 t = tl_d_from(p->position);
+    return turn > 0.0 && turn < 1e80 && tl_d_dot(t, t) <= most * most;
+}
+
 static talus_status check_pose(const talus_pose *p) {
     if (!p) {
         return TALUS_BAD_ARGUMENT;
@@ -56,34 +64,26 @@ talus_status tl_tolerance_check(float tolerance) {
 
 /* Two shapes where they stand. */
 typedef struct placed {
-    tl_convex shape[2];
     tl_polytope a, b;
     tl_frame frame; /* of A in the caller's */
     tl_frame b_in_a;
     talus_feature_pair features;
 } placed;
 
-static tl_convex inner(const talus_convex *c) {
-    tl_convex s = {c->geometry, c->hull};
-    return s;
-}
-
 static talus_status place(const talus_convex *a, const talus_pose *pose_a, const talus_convex *b,
                           const talus_pose *pose_b, const talus_feature_pair *features, placed *p) {
-    talus_status status = a && b ? check_pose(pose_a) : TALUS_BAD_ARGUMENT;
-    if (status == TALUS_OK) {
-        status = check_pose(pose_b);
+    if (!a || !b || !pose_a || !pose_b || !is_plain(pose_a) || !is_plain(pose_b)) {
+        talus_status status = a && b ? check_pose(pose_a) : TALUS_BAD_ARGUMENT;
+        status = status == TALUS_OK ? check_pose(pose_b) : status;
+        if (status != TALUS_OK) {
+            return status;
+        }
     }
-    if (status != TALUS_OK) {
-        return status;
-    }
-    p->shape[0] = inner(a);
-    p->shape[1] = inner(b);
-    tl_polytope_init(&p->a, &p->shape[0]);
-    tl_polytope_init(&p->b, &p->shape[1]);
-    tl_frame frame_b = tl_frame_of(pose_b);
-    p->frame = tl_frame_of(pose_a);
-    p->b_in_a = tl_frame_between(&p->frame, &frame_b);
+    tl_frame frame_a = tl_frame_of(pose_a), frame_b = tl_frame_of(pose_b);
+    p->frame = frame_a;
+    p->b_in_a = tl_frame_between(&frame_a, &frame_b);
+    tl_polytope_init(&p->a, a);
+    tl_polytope_init(&p->b, b);
     p->features.a = features ? features->a : 0u;
     p->features.b = features ? features->b : 0u;
     return TALUS_OK;
@@ -101,14 +101,13 @@ talus_status talus_distance(const talus_convex *a, const talus_pose *pose_a, con
         return status;
     }
     tl_closest_find(&p.a, &p.b, &p.b_in_a, p.features, &c);
-    if (!c.apart) {
-        c.point_a = c.point_b = c.common;
-    }
-    out->distance = c.apart ? (float)c.gap : 0.0f;
+    double gap = c.apart ? c.gap : 0.0;
+    tl_d3 normal = tl_frame_turn(&p.frame, c.normal), point = tl_frame_point(&p.frame, c.apart ? c.point_a : c.common);
+    out->distance = (float)gap;
     out->overlap = !c.apart;
-    out->normal = vector_out(&p, c.normal);
-    out->point_a = point_out(&p, c.point_a);
-    out->point_b = point_out(&p, c.point_b);
+    out->normal = tl_d_round(normal);
+    out->point_a = tl_d_round(point);
+    out->point_b = tl_d_round(tl_d_add(point, tl_d_scale(normal, gap)));
     out->steps = c.steps;
     out->gave_up = c.gave_up;
     if (features) {
@@ -250,11 +249,10 @@ talus_status talus_time_of_contact(const talus_convex *a, const talus_motion *mo
     if (status != TALUS_OK) {
         return status;
     }
-    tl_convex shape_a = inner(a), shape_b = inner(b);
     tl_moving moving_a, moving_b;
     talus_feature_pair cold = {0u, 0u};
-    tl_moving_init(&moving_a, &shape_a, motion_a);
-    tl_moving_init(&moving_b, &shape_b, motion_b);
+    tl_moving_init(&moving_a, a, motion_a);
+    tl_moving_init(&moving_b, b, motion_b);
     tl_advance(&moving_a, &moving_b, tolerance, 1.0, method, features ? features : &cold, out);
     return TALUS_OK;
 }

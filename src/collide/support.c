@@ -4,9 +4,7 @@
 #include "collide/support.h"
 
 #include "collide/lanes.h"
-
-/* Hulls of more vertices than this are climbed, not scanned. */
-#define SCAN_LIMIT 64u
+#include "geom/hull_climb.h"
 
 void tl_core_init(tl_core *core, const tl_convex *shape, const talus_pose *pose) {
     const talus_geometry *g = &shape->geometry;
@@ -58,34 +56,10 @@ void tl_core_init(tl_core *core, const tl_convex *shape, const talus_pose *pose)
     }
 }
 
-static uint32_t climb(const talus_hull *hull, talus_vec3 d, uint32_t v) {
-    const float *x = tl_hull_x(hull), *y = tl_hull_y(hull), *z = tl_hull_z(hull);
-    const tl_half_edge *edges = tl_hull_edges(hull);
-    const uint16_t *vertex_edge = tl_hull_vertex_edge(hull);
-    float best = x[v] * d.x + y[v] * d.y + z[v] * d.z;
-    for (uint32_t steps = 0; steps < hull->vertex_count; ++steps) {
-        uint32_t first = vertex_edge[v], e = first, to = v;
-        do {
-            uint32_t twin = tl_hull_twin(e), u = edges[twin].origin;
-            float s = x[u] * d.x + y[u] * d.y + z[u] * d.z;
-            if (s > best) {
-                best = s;
-                to = u;
-            }
-            e = edges[twin].next;
-        } while (e != first);
-        if (to == v) {
-            break;
-        }
-        v = to;
-    }
-    return v;
-}
-
 /* The lowest index among the best, which is what a plain scan would find. */
 static uint32_t scan(const talus_hull *hull, talus_vec3 d) {
     const float *x = tl_hull_x(hull), *y = tl_hull_y(hull), *z = tl_hull_z(hull);
-    tl_f8 dot[SCAN_LIMIT / 8u], dx = tl_f8_set1(d.x), dy = tl_f8_set1(d.y), dz = tl_f8_set1(d.z);
+    tl_f8 dot[TL_HULL_SCANNED / 8u], dx = tl_f8_set1(d.x), dy = tl_f8_set1(d.y), dz = tl_f8_set1(d.z);
     uint32_t blocks = hull->vertex_stride / 8u;
     tl_f8 best = tl_f8_set1(-3e38f);
     for (uint32_t i = 0; i < blocks; ++i) {
@@ -105,8 +79,9 @@ static uint32_t scan(const talus_hull *hull, talus_vec3 d) {
 }
 
 uint32_t tl_hull_support(const talus_hull *hull, talus_vec3 direction, uint32_t start) {
-    if (hull->vertex_count > SCAN_LIMIT) {
-        return climb(hull, direction, start < hull->vertex_count ? start : 0u);
+    if (hull->vertex_count > TL_HULL_SCANNED) {
+        int known = start > 0u && start < hull->vertex_count;
+        return tl_hull_climb(hull, direction, known ? start : tl_hull_seed(hull, direction));
     }
     return scan(hull, direction);
 }
@@ -196,7 +171,7 @@ static talus_aabb aabb_around(talus_vec3 center, talus_vec3 reach) {
 }
 
 static talus_aabb hull_aabb(const talus_hull *hull, const talus_pose *pose, const talus_mat3 *m) {
-    if (hull->vertex_count > SCAN_LIMIT) {
+    if (hull->vertex_count > TL_HULL_SCANNED) {
         talus_vec3 c = tl_scale(tl_add(hull->bounds.lower, hull->bounds.upper), 0.5f);
         talus_vec3 h = tl_scale(tl_sub(hull->bounds.upper, hull->bounds.lower), 0.5f);
         talus_vec3 reach =

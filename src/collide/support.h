@@ -32,7 +32,8 @@ typedef struct tl_core {
 void tl_core_init(tl_core *core, const tl_convex *shape, const talus_pose *pose);
 
 /* The point of the core that is furthest along `direction` (query frame, any length but not 0), in the query frame. The
- * index names the vertex of a segment, box or hull; on entry it is where the search on a large hull starts. */
+ * index names the vertex of a segment, box or hull; on entry it is where the search on a large hull starts, 0 if that
+ * is not known. */
 talus_vec3 tl_core_support(const tl_core *core, talus_vec3 direction, uint32_t *index);
 
 /* The same in the core's own frame. */
@@ -42,7 +43,8 @@ talus_vec3 tl_core_support_local(const tl_core *core, talus_vec3 direction, uint
 uint32_t tl_core_vertex_count(const tl_core *core);
 talus_vec3 tl_core_vertex(const tl_core *core, uint32_t index);
 
-/* The vertex of a hull furthest along a direction of its own frame, from any valid vertex on. */
+/* The vertex of a hull furthest along a direction of its own frame, from `start` on; 0: from where the hull's table of
+ * directions says. */
 uint32_t tl_hull_support(const talus_hull *hull, talus_vec3 direction, uint32_t start);
 
 static inline talus_vec3 tl_core_rotate(const tl_core *core, talus_vec3 v) {

@@ -7,8 +7,8 @@
  *
  * A vertex inside of a region of a face but behind it, with all its edges leading further behind, is in the body or
  * beyond another face: the polar dual tells (a walk over faces to the one through which the vertex is seen from the
- * centre). A cold start begins with two vertices found by jumps and climbs (after Ehmann & Lin, Accurate and Fast
- * Proximity Queries Between Polyhedra Using Convex Surface Decomposition, 2001, who look directions up).
+ * centre). A cold start begins with two vertices that are looked up by direction (Ehmann & Lin, Accurate and Fast
+ * Proximity Queries Between Polyhedra Using Convex Surface Decomposition, 2001).
  *
  * Each shape's regions are evaluated in its own frame; metres. */
 #include "collide/vclip.h"
@@ -20,8 +20,8 @@
 #define GAP_SLACK 1e-6
 #define SIZE_SLACK 5e-7
 /* More rounds cost more than the steps they save. */
-#define START_ROUNDS 5
-#define START_GAIN 0.01
+#define START_ROUNDS 4
+#define START_SHORTER 4.0
 #define ROUNDING 1e-7 /* of a normal */
 #define NOTHING 1e-14 /* of the sizes: a distance that is all rounding */
 
@@ -33,8 +33,7 @@ typedef struct walk {
     const tl_polytope *body[2];
     const tl_frame *frame; /* of body 1 in that of body 0 */
     feature at[2];
-    int meet;     /* the bodies are found to overlap */
-    tl_d3 common; /* then: a common point, in body 0's frame */
+    tl_closest *out; /* without the radii; what is in it when the walk is done */
 } walk;
 
 /* The part of a segment from tail to head that is left inside of a face's region, and the neighbours behind the planes
@@ -46,9 +45,9 @@ typedef struct clip {
     feature out;
 } clip;
 
-enum { STEP, DONE };
+enum { STEP, DONE, DOUBT };
 
-static tl_d3 across(const walk *w, int to, tl_d3 p) {
+static inline tl_d3 across(const walk *w, int to, tl_d3 p) {
     return to ? tl_frame_point_back(w->frame, p) : tl_frame_point(w->frame, p);
 }
 
@@ -67,8 +66,8 @@ static int go(walk *w, int side, feature to) {
 }
 
 static int meet(walk *w, int side, tl_d3 p) {
-    w->meet = 1;
-    w->common = side ? tl_frame_point(w->frame, p) : p;
+    w->out->cores_apart = 0;
+    w->out->point_a = side ? tl_frame_point(w->frame, p) : p;
     return DONE;
 }
 
@@ -106,50 +105,90 @@ static tl_d3 side_plane(const walk *w, int side, uint32_t e) {
     return tl_d_cross(u, tl_polytope_normal(p, p->edges[e].face));
 }
 
-/* The neighbour of vertex feature of `side` behind whose plane p (in its frame) lies; kind 0 if p is in the region. */
-static feature leave_vertex(const walk *w, int side, tl_d3 p) {
-    const tl_polytope *b = w->body[side];
-    uint32_t i = w->at[side].index, first = b->vertex_edge[i], e = first;
+/* The edge out of vertex feature i behind whose plane the point lies that is d away from the vertex, all in the body's
+ * frame; TL_NO_FEATURE if that is in the vertex's region. */
+static uint32_t leave_vertex(const tl_polytope *b, uint32_t i, tl_d3 d) {
+    uint32_t first = b->vertex_edge[i], e = first;
     if (first == TL_NO_FEATURE) {
-        return make(0u, 0u);
+        return TL_NO_FEATURE;
     }
-    tl_d3 v = vertex(w, side, i), d = tl_d_sub(p, v);
+    tl_d3 v = tl_polytope_vertex(b, i);
     do {
         uint32_t twin = tl_hull_twin(e);
-        if (tl_d_dot(d, tl_d_sub(vertex(w, side, b->edges[twin].origin), v)) > 0.0) {
-            return make(TL_FEATURE_EDGE, e);
+        if (tl_d_dot(d, tl_d_sub(tl_polytope_vertex(b, b->edges[twin].origin), v)) > 0.0) {
+            return e;
         }
         e = b->edges[twin].next;
     } while (e != first);
-    return make(0u, 0u);
+    return TL_NO_FEATURE;
 }
 
-/* The corners of a feature in body 0's frame: one or two of them. */
-static void ends(const walk *w, int side, tl_d3 *p, tl_d3 *q) {
-    feature f = w->at[side];
-    *p = vertex(w, side, f.kind == TL_FEATURE_EDGE ? tail_of(w, side, f.index) : f.index);
-    *q = f.kind == TL_FEATURE_EDGE ? vertex(w, side, head_of(w, side, f.index)) : *p;
-    if (side) {
-        *p = tl_frame_point(w->frame, *p);
-        *q = tl_frame_point(w->frame, *q);
+/* The root of a square of lengths and what it divides by, to 1e-14 of themselves. */
+static inline double root(double x, double *inverse) {
+    if (x < 1e-30 || x > 1e30) {
+        double y = tl_d_sqrt(x);
+        *inverse = 1.0 / y;
+        return y;
     }
+    double r = 1.0 / (double)sqrtf((float)x);
+    *inverse = r * (1.5 - 0.5 * x * r * r); /* Newton's step brings 24 bits to 47 */
+    return x * *inverse;
+}
+
+static tl_d3 unit_or(tl_d3 v, tl_d3 otherwise) {
+    double inverse, square = tl_d_dot(v, v);
+    (void)root(square > 0.0 ? square : 1.0, &inverse);
+    return square > 0.0 ? tl_d_scale(v, inverse) : otherwise;
+}
+
+/* The features hold the closest points p and q, in body 0's frame, d from one another; the bodies stand out over edges
+ * by `out` times the length of d.
+ *
+ * Whether they are as far apart along the normal as the features are is looked at once more. In exact arithmetic they
+ * always are, and what is asked of a vertex and of a face to end there is just that; of an edge the normals of its
+ * faces are asked, which for slivers are off. */
+static inline int end(walk *w, tl_d3 p, tl_d3 q, tl_d3 d, double out) {
+    tl_closest *c = w->out;
+    double size = (double)w->body[0]->size + (double)w->body[1]->size, inverse, square = tl_d_dot(d, d);
+    tl_d3 reach = tl_d_sub(p, w->body[0]->center);
+    c->point_a = p;
+    c->point_b = q;
+    c->cores_apart = square > NOTHING * NOTHING * (size * size + tl_d_dot(reach, reach));
+    if (!c->cores_apart) {
+        return DONE;
+    }
+    c->gap = root(square, &inverse);
+    c->normal = tl_d_scale(d, inverse);
+    return out <= (GAP_SLACK * c->gap + SIZE_SLACK * size) * c->gap ? DONE : DOUBT;
 }
 
 static int vertex_vertex(walk *w) {
-    for (int side = 0; side < 2; ++side) {
-        feature to = leave_vertex(w, side, across(w, side, vertex(w, !side, w->at[!side].index)));
-        if (to.kind) {
-            return go(w, side, to);
-        }
+    tl_d3 p = vertex(w, 0, w->at[0].index), q = tl_frame_point(w->frame, vertex(w, 1, w->at[1].index));
+    tl_d3 d = tl_d_sub(q, p);
+    uint32_t e = leave_vertex(w->body[0], w->at[0].index, d);
+    if (e != TL_NO_FEATURE) {
+        return go(w, 0, make(TL_FEATURE_EDGE, e));
     }
-    return DONE;
+    e = leave_vertex(w->body[1], w->at[1].index, tl_frame_turn_back(w->frame, tl_d_scale(d, -1.0)));
+    return e != TL_NO_FEATURE ? go(w, 1, make(TL_FEATURE_EDGE, e)) : end(w, p, q, d, 0.0);
+}
+
+/* How far the corners next to an edge in its faces stand out over its tail along d, times the length of d, in the
+ * body's frame. If they do not, what d comes from is in the edge's region, whatever the rounding of the normals. */
+static double stand_out(const tl_polytope *b, uint32_t e, tl_d3 tail, tl_d3 d) {
+    const tl_half_edge *edges = b->edges;
+    double most = 0.0;
+    for (uint32_t k = 0; k < 2u && b->face_count > 0u; ++k) {
+        uint32_t third = edges[edges[edges[e ^ k].next].next].origin;
+        most = tl_d_max(most, tl_d_dot(d, tl_d_sub(tl_polytope_vertex(b, third), tail)));
+    }
+    return most;
 }
 
 /* The face of body `side` beside edge `e`, which is u, over which d leads away from the edge at right angles; kind 0:
  * over neither, by more than normals are rounded, without which edges of parallel faces would be left and come back to.
  */
-static feature leave_wedge(const walk *w, int side, uint32_t e, tl_d3 u, tl_d3 d) {
-    const tl_polytope *b = w->body[side];
+static feature leave_wedge(const tl_polytope *b, uint32_t e, tl_d3 u, tl_d3 d) {
     tl_d3 m = tl_d_cross(d, u);
     for (uint32_t k = 0; k < 2u && b->face_count > 0u; ++k) {
         uint32_t face = b->edges[e ^ k].face;
@@ -161,9 +200,10 @@ static feature leave_wedge(const walk *w, int side, uint32_t e, tl_d3 u, tl_d3 d
     return make(0u, 0u);
 }
 
-static int vertex_edge(walk *w, int side) {
-    uint32_t e = w->at[!side].index, t = tail_of(w, !side, e), h = head_of(w, !side, e);
-    tl_d3 p = across(w, !side, vertex(w, side, w->at[side].index)), tail = vertex(w, !side, t);
+static inline int vertex_edge(walk *w, int side) {
+    const tl_polytope *own = w->body[side], *other = w->body[!side];
+    uint32_t i = w->at[side].index, e = w->at[!side].index, t = tail_of(w, !side, e), h = head_of(w, !side, e);
+    tl_d3 v = vertex(w, side, i), p = across(w, !side, v), tail = vertex(w, !side, t);
     tl_d3 u = tl_d_sub(vertex(w, !side, h), tail), d = tl_d_sub(p, tail);
     double along = tl_d_dot(d, u), length = tl_d_dot(u, u);
     if (along < 0.0) {
@@ -173,21 +213,30 @@ static int vertex_edge(walk *w, int side) {
         return go(w, !side, make(TL_FEATURE_VERTEX, h));
     }
     tl_d3 foot = tl_d_add(tail, tl_d_scale(u, along / length));
-    feature to = leave_wedge(w, !side, e, u, tl_d_sub(p, foot));
-    if (to.kind) {
-        return go(w, !side, to);
+    d = tl_d_sub(p, foot);
+    double out = stand_out(other, e, tail, d);
+    if (out > 0.0) {
+        feature to = leave_wedge(other, e, u, d);
+        if (to.kind) {
+            return go(w, !side, to);
+        }
     }
-    to = leave_vertex(w, side, across(w, side, foot));
-    return to.kind ? go(w, side, to) : DONE;
+    tl_d3 seen = across(w, side, foot);
+    e = leave_vertex(own, i, tl_d_sub(seen, v));
+    if (e != TL_NO_FEATURE) {
+        return go(w, side, make(TL_FEATURE_EDGE, e));
+    }
+    return side ? end(w, foot, p, d, out) : end(w, v, seen, tl_d_sub(seen, v), out);
 }
 
 static int edge_edge(walk *w) {
-    tl_d3 p0, p1, q0, q1;
-    double s, t;
-    ends(w, 0, &p0, &p1);
-    ends(w, 1, &q0, &q1);
-    (void)tl_segments(p0, p1, q0, q1, &s, &t);
+    const tl_polytope *a = w->body[0], *b = w->body[1];
     uint32_t e = w->at[0].index, f = w->at[1].index;
+    tl_d3 p0 = vertex(w, 0, tail_of(w, 0, e)), p1 = vertex(w, 0, head_of(w, 0, e));
+    tl_d3 tail = vertex(w, 1, tail_of(w, 1, f)), head = vertex(w, 1, head_of(w, 1, f));
+    tl_d3 q0 = tl_frame_point(w->frame, tail), q1 = tl_frame_point(w->frame, head);
+    double s, t;
+    (void)tl_segments(p0, p1, q0, q1, &s, &t);
     if (s <= 0.0 || s >= 1.0) {
         return go(w, 0, make(TL_FEATURE_VERTEX, s <= 0.0 ? tail_of(w, 0, e) : head_of(w, 0, e)));
     }
@@ -195,13 +244,23 @@ static int edge_edge(walk *w) {
         return go(w, 1, make(TL_FEATURE_VERTEX, t <= 0.0 ? tail_of(w, 1, f) : head_of(w, 1, f)));
     }
     tl_d3 u = tl_d_sub(p1, p0), v = tl_d_sub(q1, q0);
-    tl_d3 d = tl_d_sub(tl_d_add(q0, tl_d_scale(v, t)), tl_d_add(p0, tl_d_scale(u, s)));
-    feature to = leave_wedge(w, 0, e, u, d);
-    if (to.kind) {
-        return go(w, 0, to);
+    tl_d3 p = tl_d_add(p0, tl_d_scale(u, s)), q = tl_d_add(q0, tl_d_scale(v, t)), d = tl_d_sub(q, p);
+    double out_a = stand_out(a, e, p0, d);
+    if (out_a > 0.0) {
+        feature to = leave_wedge(a, e, u, d);
+        if (to.kind) {
+            return go(w, 0, to);
+        }
     }
-    to = leave_wedge(w, 1, f, tl_frame_turn_back(w->frame, v), tl_frame_turn_back(w->frame, tl_d_scale(d, -1.0)));
-    return to.kind ? go(w, 1, to) : DONE;
+    tl_d3 back = tl_frame_turn_back(w->frame, tl_d_scale(d, -1.0));
+    double out_b = stand_out(b, f, tail, back);
+    if (out_b > 0.0) {
+        feature to = leave_wedge(b, f, tl_d_sub(head, tail), back);
+        if (to.kind) {
+            return go(w, 1, to);
+        }
+    }
+    return end(w, p, q, d, out_a + out_b);
 }
 
 /* The edge of the face next to the segment. */
@@ -247,41 +306,51 @@ static int edge_face(walk *w, int side) {
     return c.above.kind ? go(w, !side, c.above) : go(w, side, make(TL_FEATURE_VERTEX, head_of(w, side, e)));
 }
 
-static int vertex_face(walk *w, int side) {
-    const tl_polytope *b = w->body[!side], *own = w->body[side];
+/* A vertex of `side`, which in the other's frame is p, stands over a face there, `height` over the corner that stands
+ * out furthest: faces are flat to about 1e-6 of their hull. */
+static int end_over_face(walk *w, int side, tl_d3 p, tl_d3 n, double height) {
+    tl_closest *c = w->out;
+    double inverse = 1.5 - 0.5 * tl_d_dot(n, n); /* of a length that is 1 to 1e-5 */
+    c->gap = height * inverse;
+    n = tl_d_scale(n, inverse);
+    tl_d3 foot = tl_d_sub(p, tl_d_scale(n, c->gap));
+    c->normal = side ? n : tl_d_scale(tl_frame_turn(w->frame, n), -1.0);
+    c->point_a = side ? foot : vertex(w, 0, w->at[0].index);
+    c->point_b = side ? p : tl_frame_point(w->frame, foot);
+    c->cores_apart = 1;
+    return DONE;
+}
+
+static inline int vertex_face(walk *w, int side) {
+    const tl_polytope *b = w->body[!side];
     uint32_t face = w->at[!side].index, first = b->face_edge[face], k = first, i = w->at[side].index;
-    tl_d3 p = across(w, !side, vertex(w, side, i));
     uint32_t outside = 0u, last = 0u;
+    tl_d3 p = across(w, !side, vertex(w, side, i)), n = tl_polytope_normal(b, face);
+    tl_d3 tail = tl_polytope_vertex(b, b->edges[first].origin);
+    double height = tl_d_dot(n, tl_d_sub(p, tail)), low = height;
     do {
-        tl_d3 on = vertex(w, !side, tail_of(w, !side, k));
-        if (tl_d_dot(tl_d_sub(p, on), side_plane(w, !side, k)) > 0.0) {
+        uint32_t next = b->edges[k].next;
+        tl_d3 head = tl_polytope_vertex(b, b->edges[next].origin), d = tl_d_sub(p, tail);
+        if (tl_d_dot(d, tl_d_cross(tl_d_sub(head, tail), n)) > 0.0) {
             ++outside, last = k;
         }
-        k = b->edges[k].next;
+        low = tl_d_min(low, tl_d_dot(n, d));
+        k = next;
+        tail = head;
     } while (k != first);
     if (outside) {
         return go(w, !side, make(TL_FEATURE_EDGE, outside == 1u ? last : nearest_side(w, !side, face, p, p)));
     }
-    tl_d3 n = tl_polytope_normal(b, face);
-    double height = tl_d_dot(n, tl_d_sub(p, vertex(w, !side, tail_of(w, !side, first))));
     if (height == 0.0) {
         return meet(w, !side, p);
     }
-    uint32_t e = own->vertex_edge[i];
+    tl_d3 m = side ? tl_frame_turn_back(w->frame, n) : tl_frame_turn(w->frame, n);
+    uint32_t e = leave_vertex(w->body[side], i, height > 0.0 ? tl_d_scale(m, -1.0) : m);
     if (e != TL_NO_FEATURE) {
-        tl_d3 m = side ? tl_frame_turn_back(w->frame, n) : tl_frame_turn(w->frame, n), v = vertex(w, side, i);
-        m = height > 0.0 ? m : tl_d_scale(m, -1.0);
-        first = e;
-        do {
-            uint32_t twin = tl_hull_twin(e);
-            if (tl_d_dot(m, tl_d_sub(vertex(w, side, own->edges[twin].origin), v)) < 0.0) {
-                return go(w, side, make(TL_FEATURE_EDGE, e));
-            }
-            e = own->edges[twin].next;
-        } while (e != first);
+        return go(w, side, make(TL_FEATURE_EDGE, e));
     }
     if (height > 0.0) {
-        return DONE;
+        return end_over_face(w, side, p, n, low);
     }
     uint32_t seen = tl_polytope_face_towards(b, face, p, &height);
     if (height <= 1.0 || seen == face) {
@@ -290,116 +359,68 @@ static int vertex_face(walk *w, int side) {
     return go(w, !side, make(TL_FEATURE_FACE, seen));
 }
 
+/* Each side by itself: what is known when it is compiled is not asked on the way. */
 static int step(walk *w) {
     uint32_t a = w->at[0].kind, b = w->at[1].kind;
-    if (a == TL_FEATURE_FACE || b == TL_FEATURE_FACE) {
-        int side = a == TL_FEATURE_FACE; /* of what is no face */
-        return w->at[side].kind == TL_FEATURE_VERTEX ? vertex_face(w, side) : edge_face(w, side);
+    if (a == TL_FEATURE_FACE) {
+        return b == TL_FEATURE_VERTEX ? vertex_face(w, 1) : edge_face(w, 1);
     }
-    if (a == TL_FEATURE_EDGE && b == TL_FEATURE_EDGE) {
-        return edge_edge(w);
+    if (b == TL_FEATURE_FACE) {
+        return a == TL_FEATURE_VERTEX ? vertex_face(w, 0) : edge_face(w, 0);
     }
-    return a == b ? vertex_vertex(w) : vertex_edge(w, a == TL_FEATURE_EDGE);
+    if (a == TL_FEATURE_EDGE) {
+        return b == TL_FEATURE_EDGE ? edge_edge(w) : vertex_edge(w, 1);
+    }
+    return b == TL_FEATURE_EDGE ? vertex_edge(w, 0) : vertex_vertex(w);
 }
 
 static uint32_t pack(feature f) { return TL_FEATURE(f.kind, f.index); }
 static feature unpack(uint32_t word) { return make(TL_FEATURE_KIND(word), TL_FEATURE_INDEX(word)); }
 
-/* Vertices near to the closest points, by a few rounds of Gilbert, An Iterative Procedure for Computing the Minimum of
- * a Quadratic Form on a Convex Set, 1966: d is a point of the difference B - A, drawn towards the origin. */
+/* Vertices near to the closest points. How far apart the bodies are along a unit direction n is n.w, w being the way
+ * from A's vertex furthest along n to B's furthest against it. That is concave in n, its greatest value the distance,
+ * and w its gradient: n + w / r, brought back to unit length, climbs it. With r the sum of both radii the first step
+ * goes all the way for balls; a step that leads down was too long. */
 static void start(walk *w) {
-    tl_d3 d = tl_d_sub(tl_frame_point(w->frame, w->body[1]->center), w->body[0]->center);
+    const tl_polytope *a = w->body[0], *b = w->body[1];
+    double radius = (double)a->size + (double)b->size, most = -1e300;
+    tl_d3 n = tl_d_sub(tl_frame_point(w->frame, b->center), a->center), best = n, way = n;
     uint32_t ia = 0u, ib = 0u;
+    n = unit_or(n, tl_d(0.0, 1.0, 0.0));
     for (int round = 0; round < START_ROUNDS; ++round) {
-        ia = tl_polytope_support(w->body[0], d, ia, round > 0);
-        ib = tl_polytope_support(w->body[1], tl_frame_turn_back(w->frame, tl_d_scale(d, -1.0)), ib, round > 0);
-        tl_d3 to = tl_d_sub(tl_frame_point(w->frame, vertex(w, 1, ib)), vertex(w, 0, ia)), along = tl_d_sub(to, d);
-        double gain = -tl_d_dot(d, along), length = tl_d_dot(along, along);
-        if (gain <= START_GAIN * tl_d_dot(d, d)) {
+        uint32_t ja = tl_polytope_seed(a, n);
+        uint32_t jb = tl_polytope_seed(b, tl_frame_turn_back(w->frame, tl_d_scale(n, -1.0)));
+        tl_d3 to = tl_d_sub(tl_frame_point(w->frame, vertex(w, 1, jb)), vertex(w, 0, ja));
+        double apart = tl_d_dot(n, to);
+        int again = round > 0 && ja == ia && jb == ib;
+        if (apart > most) {
+            most = apart, best = n, way = to, ia = ja, ib = jb;
+        } else {
+            radius *= START_SHORTER;
+        }
+        if (again) {
             break;
         }
-        d = gain >= length ? to : tl_d_add(d, tl_d_scale(along, gain / length));
+        n = unit_or(tl_d_add(tl_d_scale(best, radius), way), best);
     }
+    ia = tl_polytope_near(a, best, ia);
+    ib = tl_polytope_near(b, tl_frame_turn_back(w->frame, tl_d_scale(best, -1.0)), ib);
     w->at[0] = make(TL_FEATURE_VERTEX, ia);
     w->at[1] = make(TL_FEATURE_VERTEX, ib);
-}
-
-/* Distance, normal and points of the cores from the features that hold them. */
-static void measure(const walk *w, tl_closest *out) {
-    int face = w->at[1].kind == TL_FEATURE_FACE; /* the body of the face, if there is one */
-    if (w->at[face].kind == TL_FEATURE_FACE) {
-        const tl_polytope *b = w->body[face];
-        uint32_t f = w->at[face].index;
-        tl_d3 p = across(w, face, vertex(w, !face, w->at[!face].index)), n = tl_polytope_normal(b, f);
-        n = tl_d_scale(n, 1.0 / tl_d_length(n));
-        /* from the corner that stands out furthest: faces are flat to about 1e-6 of their hull */
-        uint32_t first = b->face_edge[f], e = first;
-        out->gap = 1e300;
-        do {
-            out->gap = tl_d_min(out->gap, tl_d_dot(n, tl_d_sub(p, vertex(w, face, tail_of(w, face, e)))));
-            e = b->edges[e].next;
-        } while (e != first);
-        tl_d3 foot = tl_d_sub(p, tl_d_scale(n, out->gap));
-        out->normal = face ? tl_d_scale(tl_frame_turn(w->frame, n), -1.0) : n;
-        out->point_a = face ? tl_frame_point(w->frame, p) : foot;
-        out->point_b = face ? tl_frame_point(w->frame, foot) : p;
-        out->cores_apart = 1;
-        return;
-    }
-    tl_d3 p0, p1, q0, q1;
-    double s, t;
-    ends(w, 0, &p0, &p1);
-    ends(w, 1, &q0, &q1);
-    out->gap = tl_d_sqrt(tl_segments(p0, p1, q0, q1, &s, &t));
-    out->point_a = tl_d_add(p0, tl_d_scale(tl_d_sub(p1, p0), s));
-    out->point_b = tl_d_add(q0, tl_d_scale(tl_d_sub(q1, q0), t));
-    tl_d3 reach = tl_d_sub(out->point_a, w->body[0]->center), d = tl_d_sub(out->point_b, out->point_a);
-    double size = (double)w->body[0]->size + (double)w->body[1]->size + tl_d_length(reach);
-    double length = tl_d_length(d); /* not the gap to the last digit: the points are rounded */
-    out->cores_apart = out->gap > NOTHING * size && length > 0.0;
-    if (out->cores_apart) {
-        out->normal = tl_d_scale(d, 1.0 / length);
-    }
-}
-
-/* How far the corners next to an edge in its faces stand out over it along d, in its frame. */
-static double stand_out(const walk *w, int side, uint32_t e, tl_d3 d) {
-    const tl_half_edge *edges = w->body[side]->edges;
-    tl_d3 tail = vertex(w, side, edges[e].origin);
-    double most = 0.0;
-    for (uint32_t k = 0; k < 2u && w->body[side]->face_count > 0u; ++k) {
-        uint32_t third = edges[edges[edges[e ^ k].next].next].origin;
-        most = tl_d_max(most, tl_d_dot(d, tl_d_sub(vertex(w, side, third), tail)));
-    }
-    return most;
-}
-
-/* Whether the bodies are as far apart along the normal as the features are. In exact arithmetic they always are, and
- * what is asked of a vertex and of a face to end there is just that; of an edge the normals of its faces are asked,
- * which for slivers are off. */
-static int is_proven(const walk *w, const tl_closest *c) {
-    double out = 0.0;
-    if (!c->cores_apart) {
-        return 1;
-    }
-    if (w->at[0].kind == TL_FEATURE_EDGE) {
-        out = stand_out(w, 0, w->at[0].index, c->normal);
-    }
-    if (w->at[1].kind == TL_FEATURE_EDGE) {
-        out += stand_out(w, 1, w->at[1].index, tl_frame_turn_back(w->frame, tl_d_scale(c->normal, -1.0)));
-    }
-    return out <= GAP_SLACK * c->gap + SIZE_SLACK * ((double)w->body[0]->size + (double)w->body[1]->size);
 }
 
 /* From the cores to the surfaces. */
 static void swell(tl_closest *out, float ra, float rb) {
     out->apart = 0;
-    if (out->cores_apart) {
-        /* between the cores, within reach of both radii */
+    if (out->cores_apart && ra + rb == 0.0f) {
+        out->apart = 1;
+    } else if (out->cores_apart) {
         double low = tl_d_max(out->gap - (double)rb, 0.0), high = tl_d_min(out->gap, (double)ra);
-        out->common = tl_d_add(out->point_a, tl_d_scale(out->normal, 0.5 * (low + high)));
         out->gap -= (double)ra + (double)rb;
         out->apart = out->gap > 0.0;
+        if (!out->apart) { /* between the cores, within reach of both radii */
+            out->common = tl_d_add(out->point_a, tl_d_scale(out->normal, 0.5 * (low + high)));
+        }
         out->point_a = tl_d_add(out->point_a, tl_d_scale(out->normal, (double)ra));
         out->point_b = tl_d_sub(out->point_b, tl_d_scale(out->normal, (double)rb));
     } else {
@@ -447,36 +468,21 @@ void tl_closest_find(const tl_polytope *a, const tl_polytope *b, const tl_frame 
         by_gjk(a, b, b_in_a, out);
         return;
     }
-    walk w;
-    w.body[0] = a;
-    w.body[1] = b;
-    w.frame = b_in_a;
-    w.meet = 0;
-    w.at[0] = unpack(features.a);
-    w.at[1] = unpack(features.b);
+    walk w = {{a, b}, b_in_a, {unpack(features.a), unpack(features.b)}, out};
     if (!tl_polytope_has(a, features.a) || !tl_polytope_has(b, features.b) ||
         (w.at[0].kind == TL_FEATURE_FACE && w.at[1].kind == TL_FEATURE_FACE)) {
         start(&w);
     }
-    while (step(&w) == STEP) {
-        if (++out->steps == MAX_STEPS) {
-            out->gave_up = 1u;
-            by_gjk(a, b, b_in_a, out);
-            return;
-        }
+    int state;
+    while ((state = step(&w)) == STEP && out->steps < MAX_STEPS) {
+        ++out->steps;
+    }
+    if (state != DONE) {
+        out->gave_up = 1u;
+        by_gjk(a, b, b_in_a, out);
+        return;
     }
     out->features.a = pack(w.at[0]);
     out->features.b = pack(w.at[1]);
-    if (w.meet) {
-        out->cores_apart = 0;
-        out->point_a = w.common;
-    } else {
-        measure(&w, out);
-        if (!is_proven(&w, out)) {
-            out->gave_up = 1u;
-            by_gjk(a, b, b_in_a, out);
-            return;
-        }
-    }
     swell(out, a->radius, b->radius);
 }

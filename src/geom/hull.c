@@ -3,6 +3,7 @@
  * F. Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", J. Math. Stat. 1(1), 2004.
  * Units: SI. */
 #include "geom/double3.h"
+#include "geom/hull_climb.h"
 #include "geom/hull_derive.h"
 
 #include <string.h>
@@ -23,6 +24,9 @@ void tl_hull_layout(talus_hull *h) {
     at += aligned(h->face_count * (uint32_t)sizeof(uint16_t));
     h->edges = at;
     at += aligned(h->half_edge_count * (uint32_t)sizeof(tl_half_edge));
+    h->squares = tl_hull_squares(h->vertex_count);
+    h->directions = at;
+    at += aligned(6u * h->squares * h->squares * (uint32_t)sizeof(uint16_t));
     h->bytes = at;
 }
 

@@ -6,7 +6,7 @@
 #include "talus/hull.h"
 
 #define TL_HULL_MAGIC 0x4c555448u /* "HTUL" */
-#define TL_HULL_VERSION 1u
+#define TL_HULL_VERSION 2u
 
 struct talus_hull {
     uint32_t magic, version;
@@ -26,7 +26,8 @@ struct talus_hull {
     talus_aabb bounds;                   /* m */
     float inner_radius;                  /* m: of the ball around the centroid that fits inside */
     float outer_radius;                  /* m: of the ball around the centroid that holds it */
-    uint32_t reserved[1];
+    uint32_t squares;                    /* along an edge of the cube of directions; 0 of a hull of few vertices */
+    uint32_t directions; /* offset: u16[6 squares squares], vertices about furthest along the squares' middles */
 };
 
 typedef struct tl_half_edge {
@@ -53,6 +54,9 @@ static inline const uint16_t *tl_hull_face_edge(const talus_hull *h) {
 }
 static inline const tl_half_edge *tl_hull_edges(const talus_hull *h) {
     return (const tl_half_edge *)(const void *)((const unsigned char *)h + h->edges);
+}
+static inline const uint16_t *tl_hull_directions(const talus_hull *h) {
+    return (const uint16_t *)(const void *)((const unsigned char *)h + h->directions);
 }
 static inline uint32_t tl_hull_twin(uint32_t half_edge) { return half_edge ^ 1u; }
 static inline talus_vec3 tl_hull_point(const talus_hull *h, uint32_t i) {

@@ -27,7 +27,6 @@ static int header_is_sound(const void *blob, size_t bytes) {
     }
     memcpy(&expected, &h, sizeof h);
     tl_hull_layout(&expected);
-    expected.reserved[0] = 0u;
     return memcmp(&h, &expected, sizeof h) == 0 && tl_hull_checksum(blob, h.bytes) == h.checksum;
 }
 
@@ -60,6 +59,11 @@ static int topology_is_sound(const talus_hull *h) {
     const tl_half_edge *edge = tl_hull_edges(h);
     const uint16_t *face_edge = tl_hull_face_edge(h), *vertex_edge = tl_hull_vertex_edge(h);
     uint32_t n = h->half_edge_count, total = 0u;
+    for (uint32_t i = 0u; i < 6u * h->squares * h->squares; ++i) {
+        if (tl_hull_directions(h)[i] >= h->vertex_count) {
+            return 0;
+        }
+    }
     for (uint32_t e = 0u; e < n; ++e) {
         if (edge[e].next >= n || edge[e].origin >= h->vertex_count || edge[e].face >= h->face_count) {
             return 0;

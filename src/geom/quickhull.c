@@ -29,8 +29,9 @@ size_t talus_hull_scratch_size(uint32_t count) {
     }
     size_t n = count, t = triangle_capacity(count);
     return aligned(n * sizeof(tl_d3)) + 2u * aligned(n * sizeof(uint32_t)) + aligned(t * sizeof(tl_qh_triangle)) +
-           3u * aligned(t * sizeof(uint32_t)) + aligned(t * sizeof(double)) + aligned(3u * t * sizeof(uint32_t)) +
-           aligned(t * sizeof(tl_qh_facet)) + aligned(edge_capacity(count) * sizeof(tl_half_edge));
+           3u * aligned(t * sizeof(uint32_t)) + aligned(t * sizeof(double)) + aligned(t * sizeof(uint64_t)) +
+           aligned(3u * t * sizeof(uint32_t)) + aligned(t * sizeof(tl_qh_facet)) +
+           aligned(edge_capacity(count) * sizeof(tl_half_edge));
 }
 
 size_t talus_hull_max_size(uint32_t count) {
@@ -64,6 +65,7 @@ static void lay_out(tl_qh *q, const talus_vec3 *points, uint32_t count, void *sc
     q->list_b = take(&at, t * sizeof(uint32_t));
     q->list_c = take(&at, t * sizeof(uint32_t));
     q->depth = take(&at, t * sizeof(double));
+    q->keys = take(&at, t * sizeof(uint64_t));
     q->edge_id = take(&at, 3u * t * sizeof(uint32_t));
     q->f = take(&at, t * sizeof(tl_qh_facet));
     q->edge = take(&at, edge_capacity(count) * sizeof(tl_half_edge));
@@ -116,6 +118,7 @@ static talus_status finish(tl_qh *q, void *out, size_t out_size, size_t *size) {
         tl_qh_merge(q);
         status = tl_qh_outline(q, &marked);
         if (status == TALUS_OK) {
+            tl_qh_order(q);
             status = tl_qh_write(q, out, out_size, size);
         }
         if (status != TALUS_FLAT_HULL && status != TALUS_BAD_BLOB) {

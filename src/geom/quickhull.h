@@ -49,6 +49,7 @@ typedef struct tl_qh {
     uint32_t epoch;
     uint32_t *list_a, *list_b, *list_c; /* t_capacity numbers each */
     double *depth;                      /* t_capacity */
+    uint64_t *keys;                     /* t_capacity, to sort by */
     uint32_t *edge_id;                  /* 3 t_capacity: half-edge of the blob by half-edge of the triangles */
     tl_qh_facet *f;                     /* t_capacity */
     tl_half_edge *edge;                 /* of the blob */
@@ -84,6 +85,8 @@ int tl_qh_refine(tl_qh *q);
 /* Makes the blob's half-edges of the facets. TALUS_FLAT_HULL where the outlines do not make a polyhedron; the facets at
  * fault are then marked for the next tl_qh_merge, or none of them. */
 talus_status tl_qh_outline(tl_qh *q, int *marked);
+/* Brings what tl_qh_outline made of a large hull into the order that it has in memory. */
+void tl_qh_order(tl_qh *q);
 /* Writes the blob. */
 talus_status tl_qh_write(const tl_qh *q, void *out, size_t out_size, size_t *size);
 

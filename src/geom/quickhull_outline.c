@@ -1,6 +1,7 @@
 /* From facets to the blob: vertices where three or more facets meet, half-edges between them, planes.
  * A vertex within a facet or between two only is left out; the chain of edges through it becomes one edge.
  * Units: metres in the blob, lattice units (quickhull.h) in the tests. */
+#include "geom/hull_climb.h"
 #include "geom/hull_derive.h"
 #include "geom/quickhull.h"
 
@@ -175,14 +176,14 @@ talus_status tl_qh_outline(tl_qh *q, int *marked) {
 
 static void write_points(const tl_qh *q, talus_hull *h) {
     float *x = (float *)(void *)((unsigned char *)h + h->vertices);
-    uint32_t stride = h->vertex_stride, n = 0u;
+    uint32_t stride = h->vertex_stride;
     for (uint32_t i = 0u; i < q->count; ++i) {
-        if (q->at[i] != TL_QH_NONE) {
+        uint32_t n = q->at[i];
+        if (n != TL_QH_NONE) {
             x[n] = q->input[i].x, x[stride + n] = q->input[i].y, x[2u * stride + n] = q->input[i].z;
-            ++n;
         }
     }
-    for (; n < stride; ++n) {
+    for (uint32_t n = h->vertex_count; n < stride; ++n) {
         x[n] = x[n - 1u], x[stride + n] = x[stride + n - 1u], x[2u * stride + n] = x[2u * stride + n - 1u];
     }
 }
@@ -231,6 +232,7 @@ talus_status tl_qh_write(const tl_qh *q, void *out, size_t out_size, size_t *siz
         face_edge[f] = (uint16_t)q->f[f].first;
         write_plane(q, h, f);
     }
+    tl_hull_fill_directions(h);
     tl_hull_derive(h, &header);
     memcpy(out, &header, sizeof header);
     h->checksum = tl_hull_checksum(out, h->bytes);

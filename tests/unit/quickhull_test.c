@@ -16,7 +16,7 @@
 #include <string.h>
 #include <time.h>
 
-#define GOLDEN 0xfed03f95u
+#define GOLDEN 0x5d644e83u
 #define CONVEX 1e-6 /* of the largest coordinate: vertices above a face */
 #define INSIDE 4e-6 /* of the largest coordinate: input points above a face */
 #define AWAY 5e-6   /* of the largest coordinate: input points away from the hull */
