@@ -252,6 +252,7 @@ void tl_stage_joint_groups(tl_step *step) {
         }
         tl_joint_group_add(step, g, joint);
     }
+    tl_linkages_soften(h);
     h->counters.joints_solved = count - dropped;
     h->counters.joints_sleeping = h->joints.used - h->awake_joints;
     h->counters.rows.dropped += dropped;

@@ -25,4 +25,7 @@ uint32_t tl_linked_rows(const tl_joint_record *j);
  * for every awake joint its place, TL_LINKAGE_NONE or TL_LINKAGE_READY. O(awake joints + blocks). */
 void tl_linkages_find(tl_step *step);
 
+/* Lets the joints of linkages that hang between several fixed places stretch a little, when their groups are made. */
+void tl_linkages_soften(tl_header *h);
+
 #endif

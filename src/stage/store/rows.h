@@ -92,7 +92,8 @@ typedef struct tl_joint_group {
     uint32_t stale;              /* bits of lanes: their linkage is to be factored anew */
     uint32_t stiff;              /* linked: one pulls so hard that its bodies are to be looked at */
     uint32_t far;                /* linked: TL_FAR_* */
-    uint32_t reserved[3];
+    uint32_t gives;              /* linked: some lane has `soft` */
+    uint32_t reserved[2];
     uint32_t code[TL_JOINT_ROWS];
     float pa[3][TL_LANES], qa[4][TL_LANES]; /* the joint's frame in a's mass frame */
     float pb[3][TL_LANES], qb[4][TL_LANES];
@@ -104,6 +105,7 @@ typedef struct tl_joint_group {
     float x[TL_LINK_ROWS][TL_LANES];      /* linked: speeds or errors to be met, then impulses */
     float give[2][TL_LANES]; /* m / (kg m^2): |arm| over the least moment of inertia across it, of a and b */
     float pull[TL_LANES];    /* N s: the linear impulse of a sub-step */
+    float soft[TL_LANES];    /* linked: by how many of its sub-step's free ways an impulse stretches its row */
 } tl_joint_group;
 
 /* A structure that linkages have in common. */
