@@ -144,7 +144,9 @@ typedef struct talus_counters {
     uint32_t touches_begun, touches_ended;
     uint32_t joints_solved, joints_sleeping;
     uint32_t linkages; /* sets of joints that are solved at once, eight alike as one; what is short and slow is not */
-    uint32_t joints_apart; /* solved one by one, for the set they are in was too large or too much tied to itself */
+    uint32_t joints_apart;     /* solved one by one, for the set they are in was too large or too much tied to itself */
+    uint32_t contacts_pressed; /* between bodies much lighter than what they bear: solved at once */
+    uint32_t contacts_left;    /* such ones for which there was no room there */
     uint32_t islands, islands_slept, islands_woken;
     uint32_t bodies_slept, bodies_woken; /* with those islands */
     uint32_t sleep_searched;             /* 1: bodies were slow for long enough to look for islands that may sleep */

@@ -13,6 +13,20 @@ void tl_stage_body_rows(tl_step *step);
 void tl_stage_contact_groups(tl_step *step);
 void tl_stage_joint_groups(tl_step *step);
 
+/* Of the way that a body has slid in a resting contact since the manifold was made, this share is taken back in a
+ * sub-step, so that what rests does not creep; what has slid further than TL_GRIP_REACH (m) slides. */
+#define TL_GRIP_SHARE 0.08f
+#define TL_GRIP_REACH 5e-4f
+
+/* Finds the presses among the contacts in groups. O(awake bodies), and where some are much heavier than others
+ * O(awake contacts). */
+void tl_stage_find_presses(tl_step *step);
+/* Their rows, from the prepared groups. */
+void tl_stage_begin_presses(tl_step *step);
+/* Velocities that keep pressed contacts from closing and sliding; displacements that part those which overlap. */
+void tl_stage_press_velocities(tl_step *step);
+void tl_stage_press_errors(tl_step *step);
+
 /* Marks the groups of linkages in which some joint was too far from its place for one push; returns whether there are
  * any. Those that share groups are marked together. */
 int tl_stage_far_linkages(tl_header *h);

@@ -19,6 +19,7 @@ enum {
     MANIFOLDS_KEPT,
     CONTACTS_SLEEPING,
     CONTACTS_TOUCHING,
+    CONTACTS_PRESSED,
     CONTACT_POINTS,
     TOUCHES_BEGUN,
     TOUCHES_ENDED,
@@ -50,6 +51,7 @@ const timeline_count timeline_counts[COUNTS] = {
     COUNTER(manifolds_kept, "manifolds kept", "manifold kept"),
     COUNTER(contacts_sleeping, "contacts asleep", "contact asleep"),
     COUNTER(contacts_touching, "contacts solved", "contact solved"),
+    COUNTER(contacts_pressed, "contacts solved at once", "contact solved at once"),
     COUNTER(contact_points, "contact points", "contact point"),
     COUNTER(touches_begun, "touches begun", "touch begun"),
     COUNTER(touches_ended, "touches ended", "touch ended"),
@@ -73,21 +75,21 @@ const uint32_t timeline_count_count = COUNTS;
 
 /* What makes a stage long, the likeliest first; closed by COUNTS. */
 static const unsigned char CAUSES[TALUS_STAGE_COUNT][5] = {
-    {COUNTS},                                                            /* commands */
-    {PROXIES_REFIT, AWAKE_BODIES, COUNTS},                               /* refit */
-    {PAIRS_MADE, PROXIES_REFIT, COUNTS},                                 /* pairs */
-    {MANIFOLDS_MADE, MANIFOLDS_FIRST, BODIES_WOKEN, COUNTS},             /* narrow */
-    {COUNTS},                                                            /* islands */
-    {CONTACTS_TOUCHING, JOINTS_SOLVED, AWAKE_BODIES, COUNTS},            /* rows */
-    {AWAKE_BODIES, COUNTS},                                              /* velocity */
-    {CONTACTS_TOUCHING, CONTACT_POINTS, JOINTS_SOLVED, COLORS, COUNTS},  /* solve */
-    {AWAKE_BODIES, COUNTS},                                              /* position */
-    {GROUPS_PUSHED, CONTACTS_TOUCHING, JOINTS_SOLVED, COUNTS},           /* relax */
-    {GROUPS_BOUNCING, COUNTS},                                           /* restitution */
-    {COUNTS},                                                            /* ccd */
-    {AWAKE_BODIES, COUNTS},                                              /* commit */
-    {BODIES_SLEPT, ISLANDS_SLEPT, SLEEP_SEARCHED, AWAKE_BODIES, COUNTS}, /* sleep */
-    {TOUCHES_BEGUN, TOUCHES_ENDED, COUNTS},                              /* events */
+    {COUNTS},                                                                     /* commands */
+    {PROXIES_REFIT, AWAKE_BODIES, COUNTS},                                        /* refit */
+    {PAIRS_MADE, PROXIES_REFIT, COUNTS},                                          /* pairs */
+    {MANIFOLDS_MADE, MANIFOLDS_FIRST, BODIES_WOKEN, COUNTS},                      /* narrow */
+    {COUNTS},                                                                     /* islands */
+    {CONTACTS_TOUCHING, JOINTS_SOLVED, AWAKE_BODIES, COUNTS},                     /* rows */
+    {AWAKE_BODIES, COUNTS},                                                       /* velocity */
+    {CONTACTS_PRESSED, CONTACTS_TOUCHING, CONTACT_POINTS, JOINTS_SOLVED, COUNTS}, /* solve */
+    {AWAKE_BODIES, COUNTS},                                                       /* position */
+    {CONTACTS_PRESSED, GROUPS_PUSHED, CONTACTS_TOUCHING, JOINTS_SOLVED, COUNTS},  /* relax */
+    {GROUPS_BOUNCING, COUNTS},                                                    /* restitution */
+    {COUNTS},                                                                     /* ccd */
+    {AWAKE_BODIES, COUNTS},                                                       /* commit */
+    {BODIES_SLEPT, ISLANDS_SLEPT, SLEEP_SEARCHED, AWAKE_BODIES, COUNTS},          /* sleep */
+    {TOUCHES_BEGUN, TOUCHES_ENDED, COUNTS},                                       /* events */
 };
 
 uint32_t timeline_counted(const talus_frame *frame, uint32_t count) {

@@ -12,6 +12,7 @@
 typedef struct old_points {
     uint32_t count, id[TL_MANIFOLD_POINTS];
     float impulse[TL_MANIFOLD_POINTS];
+    talus_vec3 at[TL_MANIFOLD_POINTS]; /* in a's mass frame */
 } old_points;
 
 static void keep_old(const tl_contact_points *points, uint32_t count, old_points *old) {
@@ -19,6 +20,7 @@ static void keep_old(const tl_contact_points *points, uint32_t count, old_points
     for (uint32_t i = 0; i < count; i++) {
         old->id[i] = points->p[i].id;
         old->impulse[i] = points->p[i].impulse;
+        old->at[i] = tl_v(points->p[i].a[0], points->p[i].a[1], points->p[i].a[2]);
     }
 }
 
@@ -29,6 +31,42 @@ static float impulse_of(const old_points *old, uint32_t id) {
         }
     }
     return 0.0f;
+}
+
+/* Where two faces lie on each other, either may be the one that the other is clipped to, and points change their names
+ * without moving: those go on with what a point there bore that is gone. */
+#define FACE_POINTS 3u
+#define SAME_PLACE 0.1f /* of the speculative margin */
+
+static int has_id(const tl_contact_points *points, uint32_t count, uint32_t id) {
+    for (uint32_t k = 0; k < count; k++) {
+        if (points->p[k].id == id) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void inherit(const tl_header *h, const old_points *old, tl_contact_points *points, uint32_t count) {
+    if (old->count < FACE_POINTS || count < FACE_POINTS) {
+        return;
+    }
+    float reach = SAME_PLACE * h->settings.speculative_margin;
+    for (uint32_t i = 0; i < old->count; i++) {
+        float nearest = reach * reach;
+        uint32_t heir = TL_NONE;
+        for (uint32_t k = 0; k < count && !has_id(points, count, old->id[i]); k++) {
+            const tl_contact_point_record *r = &points->p[k];
+            talus_vec3 way = tl_sub(tl_v(r->a[0], r->a[1], r->a[2]), old->at[i]);
+            if (r->impulse == 0.0f && tl_dot(way, way) < nearest) {
+                nearest = tl_dot(way, way);
+                heir = k;
+            }
+        }
+        if (heir != TL_NONE) {
+            points->p[heir].impulse = old->impulse[i];
+        }
+    }
 }
 
 /* Puts a manifold, given in shape a's frame, into the bodies' mass frames; pa and pb are the shapes in the world. */
@@ -52,6 +90,7 @@ static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const
         r->id = p->id;
         r->impulse = impulse_of(&old, p->id);
     }
+    inherit(h, &old, points, m->count);
     if (m->count < old.count) {
         memset(&points->p[m->count], 0, (old.count - m->count) * sizeof points->p[0]);
     }
@@ -186,9 +225,12 @@ static void store_boxes(tl_step *step, const tl_pair_batch *batch, const tl_box_
             note_ended(e, c, out->gap[k]);
             continue;
         }
+        old_points old;
+        keep_old(&tl_points(h)[c], tl_contacts(h)[c].count, &old);
         for (uint32_t i = 0; i < TL_MANIFOLD_POINTS; i++) {
             memcpy(&tl_points(h)[c].p[i], &out->point[i][k], sizeof out->point[i][k]);
         }
+        inherit(h, &old, &tl_points(h)[c], count);
         memcpy(tl_heads(h)[c].normal, out->normal[k].f, 3u * sizeof(float));
         tl_contacts(h)[c].count = count;
         kept_until_moved(h, &tl_contacts(h)[c]);

@@ -62,7 +62,7 @@ static tl_contact_group *open_group(tl_header *h) {
     memset(g->a, 0, sizeof g->a);
     memset(g->b, 0, sizeof g->b);
     memset(g->contact, 0, sizeof g->contact);
-    g->lanes = g->points = 0;
+    g->lanes = g->points = g->pressed = 0;
     return g;
 }
 
@@ -280,6 +280,7 @@ void tl_stage_joint_groups(tl_step *step) {
         }
         tl_joint_group_add(step, g, joint);
     }
+    tl_linkages_soften(h);
     tl_linkages_note_exact(h);
     h->counters.joints_solved = count - dropped;
     h->counters.joints_sleeping = h->joints.used - h->awake_joints;

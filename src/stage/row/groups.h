@@ -35,6 +35,9 @@ int tl_linkage_cut(tl_step *step, tl_linkage *l, const tl_linkage_shape *s, tl_l
  * for every awake joint its place, TL_LINKAGE_NONE or TL_LINKAGE_READY. O(awake joints + blocks). */
 void tl_linkages_find(tl_step *step);
 
+/* Lets the joints of linkages that hang between several fixed places stretch a little, when their groups are made. */
+void tl_linkages_soften(tl_header *h);
+
 /* Notes in the groups, when all are made, which of the linkages are not exact. */
 void tl_linkages_note_exact(tl_header *h);
 

@@ -199,17 +199,6 @@ static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
     return 0;
 }
 
-/* What hangs between several fixed places may be taut as a string, and its stiffness across is beyond a linear solve.
- */
-static int is_strung(const tl_header *h, const uint32_t *order, uint32_t count) {
-    uint32_t held = 0;
-    for (uint32_t k = 0; k < count; k++) {
-        const tl_joint_record *j = &tl_joints(h)[order[k]];
-        held += !free_row(h, j->body_a) || !free_row(h, j->body_b);
-    }
-    return held > 1u && count > 4u;
-}
-
 static void find_components(const tl_step *step, finder *f) {
     tl_header *h = f->h;
     const uint32_t *awake = tl_awake_joint(h);
@@ -220,8 +209,7 @@ static void find_components(const tl_step *step, finder *f) {
             continue;
         }
         uint32_t ends, exact, count = gather(h, awake[k], f->joints, &ends, &exact);
-        if (count > 1u && (is_easy(h, order + f->joints, count) || is_strung(h, order + f->joints, count) ||
-                           is_wild(step, order + f->joints, count))) {
+        if (count > 1u && (is_easy(h, order + f->joints, count) || is_wild(step, order + f->joints, count))) {
             leave(h, f->joints, count, TL_LINKAGE_APART); /* not to be gathered again from another joint */
         } else if (count > 1u) {
             uint32_t shape = shape_of(f, f->joints, count, ends);
@@ -331,6 +319,36 @@ static void place_linkages(tl_step *step, finder *f) {
         linkages[kept++] = l;
     }
     h->linkages = h->counters.linkages = kept;
+}
+
+/* What hangs between several fixed places may be taut, and were it rigid no force would be too much for it: a straight
+ * string bears a load across with an infinite pull alone. So its joints stretch by this many of the ways that their
+ * pull, unopposed, would move them in a sub-step (a constraint's compliance: Tournier et al., see stages.h). */
+#define STRUNG_SOFT 1e-3f
+
+static int is_strung(const tl_header *h, const tl_linkage *l) {
+    const tl_block_node *node = tl_linkage_nodes(h) + l->first_node;
+    uint32_t held = 0;
+    for (uint32_t k = 0; k < l->nodes; k++) {
+        held += node[k].end[0] == TL_BLOCK_FREE || node[k].end[1] == TL_BLOCK_FREE;
+    }
+    return held > 1u;
+}
+
+void tl_linkages_soften(tl_header *h) {
+    for (uint32_t i = 0; i < h->linkages; i++) {
+        tl_linkage *l = &tl_linkages(h)[i];
+        int strung = is_strung(h, l);
+        l->exact &= !strung; /* it gives before the move only */
+        for (uint32_t k = 0; k < l->nodes && strung; k++) {
+            uint32_t place = tl_linkage_places(h)[l->first_place + k];
+            tl_joint_group *g = &tl_joint_group_pool(h)[place / TL_LANES];
+            g->gives = 1u;
+            for (uint32_t lane = place % TL_LANES, last = l->wide ? TL_LANES : lane + 1u; lane < last; lane++) {
+                g->soft[lane] = STRUNG_SOFT;
+            }
+        }
+    }
 }
 
 /* Whether all awake joints are sure to get a row. */

@@ -10,11 +10,6 @@
  * that the bottom of a deep pile does not give way. */
 #define PUSH_SHARE 0.6f
 
-/* Of the way that a body has slid in a resting contact since the manifold was made, this share is taken back in a
- * sub-step, so that what rests does not creep; what has slid further than GRIP_REACH (m) slides. */
-#define GRIP_SHARE 0.08f
-#define GRIP_REACH 5e-4f
-
 /* The velocities of eight pairs of bodies, or their displacements. */
 typedef struct pair_velocity {
     v8 va, ua, vb, ub;
@@ -106,8 +101,8 @@ typedef struct grip {
 static inline grip grip_of(const tl_step *step, const tl_contact_group *g, const pair_motion *m, v8 n) {
     v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
     v8 ja1 = v8_load(g->ja1[0]), jb1 = v8_load(g->jb1[0]), ja2 = v8_load(g->ja2[0]), jb2 = v8_load(g->jb2[0]);
-    tl_f8 reach = tl_f8_set1(GRIP_REACH), back = tl_f8_neg(reach);
-    tl_f8 rate = tl_f8_mul(tl_f8_load(g->held), tl_f8_set1(GRIP_SHARE * step->inverse_sub));
+    tl_f8 reach = tl_f8_set1(TL_GRIP_REACH), back = tl_f8_neg(reach);
+    tl_f8 rate = tl_f8_mul(tl_f8_load(g->held), tl_f8_set1(TL_GRIP_SHARE * step->inverse_sub));
     tl_f8 turn1 = tl_f8_sub(v8_dot(jb1, m->db), v8_dot(ja1, m->da));
     tl_f8 turn2 = tl_f8_sub(v8_dot(jb2, m->db), v8_dot(ja2, m->da));
     tl_f8 way1 = tl_f8_add(tl_f8_add(tl_f8_load(g->slid[0]), v8_dot(t1, m->d)), turn1);
@@ -164,16 +159,27 @@ static void solve_rolling(const tl_step *step, tl_contact_group *g, pair_velocit
     apply_spin(p, ja2, jb2, tl_f8_sub(new2, old2));
 }
 
+/* The lanes of a group that are in a press: they are hard, for there is no need of a spring. */
+static inline tl_m8 pressed_lanes(const tl_contact_group *g) {
+    float lanes[TL_LANES];
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        lanes[k] = g->pressed >> k & 1u ? 1.0f : 0.0f;
+    }
+    return tl_f8_gt(tl_f8_loadu(lanes), tl_f8_zero());
+}
+
 static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_velocity *p, const pair_motion *m, v8 n,
-                                 int with_bias) {
+                                 int with_bias, int pressed) {
     tl_f8 zero = tl_f8_zero(), one = tl_f8_set1(1.0f), inverse_h = tl_f8_set1(step->inverse_sub);
     tl_f8 rate = tl_f8_set1(step->bias_rate), push = tl_f8_set1(-step->h->settings.push_speed);
     tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
+    tl_m8 hard = pressed ? pressed_lanes(g) : tl_m8_zero();
     for (uint32_t i = 0; i < g->points; i++) {
         tl_contact_lane_point *c = &g->point[i];
         v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
         tl_f8 gap = gap_now(m, c, ja, jb);
-        tl_m8 apart = tl_f8_gt(gap, zero);
+        gap = pressed ? tl_f8_select(hard, tl_f8_max(gap, zero), gap) : gap;
+        tl_m8 apart = pressed ? tl_m8_or(hard, tl_f8_gt(gap, zero)) : tl_f8_gt(gap, zero);
         tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_load(c->mass);
         tl_f8 old = tl_f8_load(c->impulse), now = old;
         if (with_bias) {
@@ -193,12 +199,12 @@ static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_
 
 /* Before the move friction is what the last sub-step found, as part of the warm start: worked out against the spring's
  * pressure it would hold what the spring moves, and what rests would creep. */
-static inline void solve_contact_group(const tl_step *step, tl_contact_group *g) {
+static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int pressed) {
     pair_velocity p;
     load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     v8 n = v8_load(g->normal[0]);
     pair_motion moved = load_motion(step, g, n);
-    solve_normals(step, g, &p, &moved, n, 1);
+    solve_normals(step, g, &p, &moved, n, 1, pressed);
     if (g->rolls && step->first_substep) { /* there is no warm start of it */
         solve_rolling(step, g, &p, n, pressure_of(g));
     }
@@ -215,7 +221,7 @@ static inline void relax_contact_group(const tl_step *step, tl_contact_group *g)
     tl_f8 pressure = pressure_of(g);
     solve_tangent(g, &p, back, n, pressure);
     solve_twist(g, &p, pressure);
-    solve_normals(step, g, &p, &moved, n, 0);
+    solve_normals(step, g, &p, &moved, n, 0, 0);
     pressure = pressure_of(g);
     solve_tangent(g, &p, back, n, pressure);
     solve_twist(g, &p, pressure);
@@ -227,7 +233,12 @@ static inline void relax_contact_group(const tl_step *step, tl_contact_group *g)
 
 static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
-        solve_contact_group(step, &tl_group_pool(step->h)[i]);
+        tl_contact_group *g = &tl_group_pool(step->h)[i];
+        if (g->pressed) {
+            solve_contact_group(step, g, 1);
+        } else {
+            solve_contact_group(step, g, 0);
+        }
     }
 }
 

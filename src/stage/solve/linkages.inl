@@ -32,7 +32,7 @@ static inline int is_linear(uint32_t code) {
 
 /* A row that does not hold stands for itself alone and has nothing to meet. */
 static void link_diagonal(link_lane k, uint32_t live, float *d) {
-    wf one = wf_set1(1.0f);
+    wf one = wf_set1(1.0f), soft = wf_load(k.g->soft + k.lane);
     for (uint32_t i = 0; i < live; i++) {
         wf holds = wf_load(k.g->active[i] + k.lane);
         for (uint32_t j = 0; j < i; j++) {
@@ -40,6 +40,7 @@ static void link_diagonal(link_lane k, uint32_t live, float *d) {
             wf_store(d + ldlt_at(i, j) * TL_WIDTH, wf_mul(both, wf_load(k.g->matrix[ldlt_at(i, j)] + k.lane)));
         }
         wf a = wf_load(k.g->matrix[ldlt_at(i, i)] + k.lane);
+        a = wf_mad(a, a, soft);
         wf_store(d + ldlt_at(i, i) * TL_WIDTH, wf_mad(wf_sub(one, holds), holds, a));
     }
 }

@@ -14,6 +14,16 @@ static inline tl_f8 speed_to_meet(const tl_joint_group *g, const tl_joint_row *r
     return tl_f8_mad(joint_speed(p, &rows[k], row_kind(g, k)), give, tl_f8_load(rows[k].impulse));
 }
 
+/* m or rad: how far a row is off, beyond what its impulse stretches it by. */
+static inline tl_f8 error_to_meet(const tl_step *step, const tl_joint_group *g, const tl_joint_row *rows, uint32_t k) {
+    tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
+    if (g->gives) {
+        tl_f8 give = tl_f8_mul(tl_f8_load(g->soft), tl_f8_load(g->matrix[k * (k + 1u) / 2u + k]));
+        error = tl_f8_mad(error, tl_f8_mul(give, tl_f8_set1(step->sub)), tl_f8_load(rows[k].impulse));
+    }
+    return error;
+}
+
 static inline void set_active(tl_joint_group *g, uint32_t k, tl_m8 holds) {
     tl_f8 now = tl_f8_and_mask(holds, tl_f8_set1(1.0f));
     g->stale |= tl_m8_bits(tl_m8_not(tl_f8_eq(now, tl_f8_load(g->active[k]))));
@@ -31,6 +41,19 @@ static inline void read_range(const tl_step *step, tl_joint_group *g, const tl_j
     tl_f8_store(g->x[k], tl_f8_and_mask(holds, tl_f8_neg(speed)));
 }
 
+/* The speed of an equality before the bodies move. What stretches has taken back with it what it is off: as a spring
+ * that is solved implicitly, with which its pull stays bounded. */
+static inline tl_f8 speed_before_move(const tl_step *step, const tl_joint_group *g, const tl_joint_row *rows,
+                                      uint32_t k, tl_f8 speed) {
+    speed = tl_f8_add(speed, tl_f8_load(rows[k].curve));
+    if (g->gives) {
+        tl_m8 soft = tl_f8_gt(tl_f8_load(g->soft), tl_f8_zero());
+        tl_f8 back = tl_f8_mul(error_to_meet(step, g, rows, k), tl_f8_set1(step->inverse_sub));
+        speed = tl_f8_add(speed, tl_f8_and_mask(soft, back));
+    }
+    return speed;
+}
+
 /* Speeds to be taken away. */
 static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
@@ -43,7 +66,7 @@ static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) 
         load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
         for (uint32_t k = 0; k < g->fixed; k++) {
             tl_f8 speed = speed_to_meet(g, rows, k, &p);
-            speed = step->before_move ? tl_f8_add(speed, tl_f8_load(rows[k].curve)) : speed;
+            speed = step->before_move ? speed_before_move(step, g, rows, k, speed) : speed;
             tl_f8_store(g->x[k], tl_f8_neg(speed));
         }
         for (uint32_t k = g->fixed; k < g->linked; k++) {
@@ -80,7 +103,7 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
         load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
         tl_m8 far = tl_m8_zero();
         for (uint32_t k = 0; k < g->fixed; k++) {
-            tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
+            tl_f8 error = error_to_meet(step, g, rows, k);
             error = tl_f8_add(error, joint_speed(&p, &rows[k], row_kind(g, k)));
             tl_f8_store(g->x[k], tl_f8_neg(error));
             tl_f8 most = tl_f8_set1(is_linear_row(g->code[k]) ? FAR_AWAY : FAR_TURNED);

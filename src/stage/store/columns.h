@@ -94,6 +94,11 @@
     X(row_stiffness, float, ROW, SOLVE, STEP, 4)                                                                       \
     X(linkage_queue, uint32_t, ROW, ROWS, STEP, 4)                                                                     \
     X(linkage_scratch, uint32_t, LINKSCRATCH, ROWS, STEP, 4)                                                           \
+    X(presses, tl_press, PRESSED, ROWS, STEP, 4)                                                                       \
+    X(pressed_pool, tl_pressed, PRESSED, ROWS, STEP, 4)                                                                \
+    X(press_nodes, tl_block_node, PRESSED, ROWS, STEP, 4)                                                              \
+    X(press_blocks, tl_block, PRESSBLOCK, ROWS, STEP, 4)                                                               \
+    X(press_values, float, PRESSVALUE, SOLVE, STEP, 4)                                                                 \
     /* what a step tells */                                                                                            \
     X(event_begin, talus_contact_event, EVENT, EVENTS, STEP, 4)                                                        \
     X(event_end, talus_contact_event, EVENT, EVENTS, STEP, 4)                                                          \

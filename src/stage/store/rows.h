@@ -41,12 +41,12 @@ typedef struct tl_contact_lane_point {
 typedef struct tl_contact_group {
     uint32_t a[TL_LANES], b[TL_LANES]; /* body rows */
     uint32_t contact[TL_LANES];
-    uint32_t lanes, points;  /* how many are in use */
-    uint32_t bounces, rolls; /* whether any lane has restitution, rolling resistance */
-    uint32_t heard;          /* whether any lane has events to tell */
-    uint32_t deep;           /* whether any point is deep enough to be pushed */
-    uint32_t struck;         /* whether any lane bounced in the last sweep */
-    uint32_t reserved;
+    uint32_t lanes, points;     /* how many are in use */
+    uint32_t bounces, rolls;    /* whether any lane has restitution, rolling resistance */
+    uint32_t heard;             /* whether any lane has events to tell */
+    uint32_t deep;              /* whether any point is deep enough to be pushed */
+    uint32_t struck;            /* whether any lane bounced in the last sweep */
+    uint32_t pressed;           /* bits of lanes that are in a press */
     float normal[3][TL_LANES];  /* from a to b */
     float tangent[3][TL_LANES]; /* the second tangent is normal x tangent */
     float ja1[3][TL_LANES], jb1[3][TL_LANES], ja2[3][TL_LANES], jb2[3][TL_LANES];
@@ -101,7 +101,7 @@ typedef struct tl_joint_group {
     uint32_t far;                /* linked: TL_FAR_* */
     uint32_t exact;              /* one solve of its velocities in a sub-step leaves nothing to solve */
     uint32_t needs;              /* TL_JOINT_* */
-    uint32_t reserved;
+    uint32_t gives;              /* linked: some lane has `soft` */
     uint32_t code[TL_JOINT_ROWS];
     float pa[3][TL_LANES], qa[4][TL_LANES]; /* the joint's frame in a's mass frame */
     float pb[3][TL_LANES], qb[4][TL_LANES];
@@ -109,6 +109,7 @@ typedef struct tl_joint_group {
     float active[TL_LINK_ROWS][TL_LANES];        /* linked: 1 for a row that holds now */
     float give[2][TL_LANES]; /* m / (kg m^2): |arm| over the least moment of inertia across it, of a and b */
     float pull[TL_LANES];    /* N s: the linear impulse of a sub-step */
+    float soft[TL_LANES];    /* linked: by how many of its sub-step's free ways an impulse stretches its row */
     float k[2][9][TL_LANES]; /* K of a and b, by rows */
     /* The matrix of the first rows, the lower half by rows. Of linked joints it takes in their hard ranges; of others
      * it is the equalities' and stands as L D L^T with D inverted. */
@@ -138,5 +139,31 @@ typedef struct tl_linkage {
      * then of the cuts, values of the cuts behind those of the pieces */
     uint32_t inner, cuts, first_group, cut, cut_values;
 } tl_linkage;
+
+#define TL_MOST_PRESSED 128u
+#define TL_PRESS_ROWS 6u
+
+/* A contact that is solved at once with others: the rows of its points, then of both tangents. */
+typedef struct tl_pressed {
+    uint32_t place;          /* its contact group times eight, plus its lane */
+    uint32_t row[2], points; /* body rows */
+    uint32_t holds;          /* bits of the rows that are equalities now */
+    uint32_t slides;         /* friction had to give way in this solve */
+    uint32_t barred;         /* bits of rows that would have pulled at once */
+    uint32_t reserved;
+    float n[3][3];                                           /* the normal and the tangents */
+    float j[2][TL_PRESS_ROWS][3];                            /* whitened angular Jacobians of a and b */
+    float impulse[TL_PRESS_ROWS], speed[TL_PRESS_ROWS];      /* before a solve */
+    float mass[2], turns[2];                                 /* of a and b: inverse mass, 1 if impulses turn it */
+    float matrix[TL_PRESS_ROWS * (TL_PRESS_ROWS + 1u) / 2u]; /* the lower half by rows */
+} tl_pressed;
+
+/* Contacts that hang together through bodies that can be moved. */
+typedef struct tl_press {
+    uint32_t first, count; /* in pressed_pool and press_nodes */
+    uint32_t values;       /* in press_values */
+    uint32_t stale;        /* it is to be factored anew */
+    float soft;            /* by what share its diagonal is raised */
+} tl_press;
 
 #endif

@@ -50,6 +50,9 @@ uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_
     capacity[TL_COUNT_LINKBLOCK] = def->joint_capacity * TL_LINK_BLOCKS;
     capacity[TL_COUNT_LINKVALUE] = def->joint_capacity * TL_LINK_VALUES;
     capacity[TL_COUNT_LINKSCRATCH] = TL_BLOCK_SCRATCH(def->joint_capacity, def->joint_capacity + 1u);
+    capacity[TL_COUNT_PRESSED] = def->contact_capacity < TL_MOST_PRESSED ? def->contact_capacity : TL_MOST_PRESSED;
+    capacity[TL_COUNT_PRESSBLOCK] = capacity[TL_COUNT_PRESSED] * TL_PRESS_BLOCKS;
+    capacity[TL_COUNT_PRESSVALUE] = capacity[TL_COUNT_PRESSED] * TL_PRESS_VALUES;
     capacity[TL_COUNT_EVENT] = def->event_capacity;
 #ifdef TALUS_NO_PROFILE
     capacity[TL_COUNT_FRAME] = 0;

@@ -24,6 +24,10 @@ typedef enum tl_column_id {
 #define TL_LINK_BLOCKS 4u
 #define TL_LINK_VALUES 256u
 
+/* The same of presses, a contact in them. */
+#define TL_PRESS_BLOCKS 4u
+#define TL_PRESS_VALUES 192u
+
 /* The capacities that the table's `count` names. */
 typedef enum tl_count {
     TL_COUNT_BODY,
@@ -43,6 +47,9 @@ typedef enum tl_count {
     TL_COUNT_LINKBLOCK,
     TL_COUNT_LINKVALUE,
     TL_COUNT_LINKSCRATCH,
+    TL_COUNT_PRESSED,
+    TL_COUNT_PRESSBLOCK,
+    TL_COUNT_PRESSVALUE,
     TL_COUNT_EVENT,
     TL_COUNT_OF_STATE, /* worlds that agree in those above have one layout of the state */
     TL_COUNT_TALLY = TL_COUNT_OF_STATE,
@@ -88,10 +95,10 @@ typedef struct tl_header {
     uint32_t pairs_doubted; /* not 0: what awake pairs keep of how far they are apart (tl_pair.clear) is void */
     talus_counters counters;
     tl_event_counts events;
-    uint32_t groups, joint_groups, joint_rows, linkages; /* of the last step */
-    uint32_t frames, next_frame;                         /* of the ring: in use, the place that the next step fills */
-    uint32_t ties, tallied;                              /* changes of what is tied and awake; as of the last tally */
-    uint32_t tallied_points, tallied_ties;               /* contact points; contacts and joints */
+    uint32_t groups, joint_groups, joint_rows, linkages, pressed, presses; /* of the last step */
+    uint32_t frames, next_frame;           /* of the ring: in use, the place that the next step fills */
+    uint32_t ties, tallied;                /* changes of what is tied and awake; as of the last tally */
+    uint32_t tallied_points, tallied_ties; /* contact points; contacts and joints */
 } tl_header;
 
 /* One accessor a column: tl_body_pose(h) and so on. */

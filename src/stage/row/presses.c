@@ -1,0 +1,217 @@
+/* Presses: contacts that bear far more than the weight of what lies between, to be solved at once.
+ *
+ * Gauss-Seidel hands a load down by the share that the lighter of two bodies has of both: under a body that is R times
+ * as heavy it needs R sweeps a contact, and until then the light ones give way. So where a body stands on one many
+ * times lighter, the contacts from there on down that bear many times the weight of one of their bodies, as the
+ * impulses of the last sub-step have it, are put into a system of their own. It is ordered as linkages are. */
+#include <string.h>
+
+#include "stage/row/groups.h"
+
+#define UNLIKE 12.0f /* masses: from here on a body is heavy on another */
+#define LOADED 12.0f /* weights of a body: from here on a contact is a load to it */
+#define MOST_UNLIKE                                                                                                    \
+    4096.0f /* masses in a press: beyond, what a float rounds is as much as what the light ones need                   \
+             */
+
+/* Whether some awake bodies' masses are so unlike that there may be a press. */
+static int any_unlike(const tl_header *h) {
+    float least = 3.0e38f, most = 0.0f;
+    for (uint32_t row = 1; row <= h->awake_bodies; row++) {
+        float inverse = tl_row_velocity(h)[row].f[6];
+        if (inverse > 0.0f) {
+            least = tl_min(least, inverse), most = tl_max(most, inverse);
+        }
+    }
+    return most > UNLIKE * least;
+}
+
+/* What of a contact's impulse, N s, makes it a load: per inverse mass. */
+static float load_of(const tl_header *h, uint32_t contact) {
+    float sum = 0.0f;
+    for (uint32_t k = 0; k < tl_contacts(h)[contact].count; k++) {
+        sum += tl_points(h)[contact].p[k].impulse;
+    }
+    return sum;
+}
+
+typedef struct finder {
+    tl_header *h;
+    float least; /* m/s: what a load would give a body in a sub-step, at least */
+    uint32_t *queue, *pressed, found;
+    uint32_t count; /* contacts to be pressed, whether there is room or not */
+} finder;
+
+/* A load to a body that joints tie is left to the sweeps: its press and its linkage would undo one another. */
+static int is_load_to(const finder *f, uint32_t row, float load) {
+    return load * tl_row_velocity(f->h)[row].f[6] > f->least;
+}
+static int is_tied(const finder *f, uint32_t row) {
+    return row && tl_bodies(f->h)[tl_awake_body(f->h)[row - 1u]].first_joint != TL_NONE;
+}
+
+/* A body that a contact presses is looked at in its turn. */
+static void press_body(finder *f, uint32_t row, float load) {
+    if (!f->pressed[row] && is_load_to(f, row, load) && !is_tied(f, row)) {
+        f->pressed[row] = 1u;
+        f->queue[f->found++] = row;
+    }
+}
+
+/* Bodies that bear one many times as heavy. */
+static void find_first(finder *f) {
+    const tl_header *h = f->h;
+    for (uint32_t k = 0; k < h->awake_contacts; k++) {
+        uint32_t contact = tl_awake_contact(h)[k];
+        const tl_contact_meta *m = &tl_contacts(h)[contact];
+        uint32_t a = tl_body_row(h)[m->body_a], b = tl_body_row(h)[m->body_b];
+        float ma = tl_row_velocity(h)[a].f[6], mb = tl_row_velocity(h)[b].f[6];
+        if ((m->flags & TL_CONTACT_COLORED) && tl_min(ma, mb) > 0.0f && tl_max(ma, mb) > UNLIKE * tl_min(ma, mb)) {
+            press_body(f, ma > mb ? a : b, load_of(h, contact));
+        }
+    }
+}
+
+/* Bodies that bear what those bear. */
+static void find_rest(finder *f) {
+    const tl_header *h = f->h;
+    for (uint32_t head = 0; head < f->found; head++) {
+        uint32_t body = tl_awake_body(h)[f->queue[head] - 1u];
+        for (uint32_t link = tl_body_links(h)[body].first_pair; link != TL_NONE;
+             link = tl_pair_links(h)[link / 2u].next[link & 1u]) {
+            const tl_pair *p = &tl_pairs(h)[link / 2u];
+            if (p->contact != TL_NONE && (tl_contacts(h)[p->contact].flags & TL_CONTACT_COLORED)) {
+                press_body(f, tl_body_row(h)[link & 1u ? p->body_a : p->body_b], load_of(h, p->contact));
+            }
+        }
+    }
+}
+
+/* The contacts of pressed bodies that are a load to one of theirs, as they lie in the groups. */
+static void collect(finder *f) {
+    tl_header *h = f->h;
+    for (uint32_t i = 0; i < h->groups; i++) {
+        const tl_contact_group *g = &tl_group_pool(h)[i];
+        for (uint32_t k = 0; k < g->lanes; k++) {
+            uint32_t a = g->a[k], b = g->b[k];
+            if (!(f->pressed[a] | f->pressed[b])) {
+                continue;
+            }
+            float load = load_of(h, g->contact[k]);
+            int on_a = is_load_to(f, a, load), on_b = is_load_to(f, b, load);
+            if (!(on_a || on_b) || (on_a && is_tied(f, a)) || (on_b && is_tied(f, b))) {
+                continue;
+            }
+            if (f->count++ >= h->capacity[TL_COUNT_PRESSED]) {
+                continue;
+            }
+            tl_pressed *p = &tl_pressed_pool(h)[h->pressed++];
+            memset(p, 0, sizeof *p);
+            p->place = i * TL_LANES + k;
+            p->row[0] = g->a[k], p->row[1] = g->b[k];
+            p->points = tl_contacts(h)[g->contact[k]].count;
+        }
+    }
+}
+
+/* The contacts that hang together with the one at `first`, which become the order from there on; f->pressed numbers
+ * their bodies from 1. Returns how many there are. */
+static uint32_t gather(finder *f, uint32_t first, uint32_t *ends) {
+    tl_header *h = f->h;
+    tl_pressed *pool = tl_pressed_pool(h);
+    uint32_t count = 1, numbers = 0;
+    for (uint32_t k = first; k < first + count; k++) {
+        for (uint32_t side = 0; side < 2u; side++) {
+            uint32_t row = pool[k].row[side];
+            if (tl_row_velocity(h)[row].f[6] > 0.0f && !f->pressed[row]) {
+                f->pressed[row] = ++numbers;
+                for (uint32_t j = first + count; j < h->pressed; j++) {
+                    if (pool[j].row[0] == row || pool[j].row[1] == row) {
+                        tl_pressed next = pool[j];
+                        pool[j] = pool[first + count];
+                        pool[first + count++] = next;
+                    }
+                }
+            }
+        }
+    }
+    *ends = numbers;
+    return count;
+}
+
+static uint32_t end_of(const finder *f, uint32_t row) {
+    return tl_row_velocity(f->h)[row].f[6] > 0.0f ? f->pressed[row] - 1u : TL_BLOCK_FREE;
+}
+
+/* What was met last is taken first, as in linkages. */
+static void reverse(tl_pressed *p, uint32_t count) {
+    for (uint32_t k = 0; k < count / 2u; k++) {
+        tl_pressed swap = p[k];
+        p[k] = p[count - 1u - k], p[count - 1u - k] = swap;
+    }
+}
+
+/* Whether the masses of the bodies of `count` contacts differ by more than a float can tell apart. */
+static int is_too_unlike(const tl_header *h, const tl_pressed *p, uint32_t count) {
+    float least = 3.0e38f, most = 0.0f;
+    for (uint32_t k = 0; k < 2u * count; k++) {
+        float inverse = tl_row_velocity(h)[p[k / 2u].row[k % 2u]].f[6];
+        least = inverse > 0.0f ? tl_min(least, inverse) : least;
+        most = tl_max(most, inverse);
+    }
+    return most > MOST_UNLIKE * least;
+}
+
+/* Makes presses of what was collected; contacts whose factor has no room stay out of any. */
+static void make_presses(finder *f) {
+    tl_header *h = f->h;
+    uint32_t scratch[TL_BLOCK_SCRATCH(TL_MOST_PRESSED, 2u * TL_MOST_PRESSED)], blocks = 0, values = 0, count;
+    memset(f->pressed, 0, (h->awake_bodies + 1u) * sizeof(uint32_t));
+    for (uint32_t first = 0; first < h->pressed; first += count) {
+        uint32_t ends, room = h->capacity[TL_COUNT_PRESSBLOCK] - blocks, size;
+        count = gather(f, first, &ends);
+        reverse(tl_pressed_pool(h) + first, count);
+        tl_block_node *node = tl_press_nodes(h) + first;
+        for (uint32_t k = 0; k < count; k++) {
+            const tl_pressed *p = &tl_pressed_pool(h)[first + k];
+            node[k].end[0] = end_of(f, p->row[0]), node[k].end[1] = end_of(f, p->row[1]);
+            node[k].rows = p->points + 2u;
+        }
+        uint32_t used = tl_block_plan(node, count, ends, tl_press_blocks(h), blocks, room, scratch, &size);
+        if (used == TL_BLOCK_FREE || size > h->capacity[TL_COUNT_PRESSVALUE] - values ||
+            is_too_unlike(h, tl_pressed_pool(h) + first, count)) {
+            h->counters.contacts_left += count;
+            continue;
+        }
+        tl_press *s = &tl_presses(h)[h->presses++];
+        memset(s, 0, sizeof *s);
+        s->first = first, s->count = count, s->values = values;
+        blocks += used, values += size;
+        for (uint32_t k = 0; k < count; k++) {
+            uint32_t place = tl_pressed_pool(h)[first + k].place;
+            tl_group_pool(h)[place / TL_LANES].pressed |= 1u << place % TL_LANES;
+        }
+        h->counters.contacts_pressed += count;
+    }
+}
+
+void tl_stage_find_presses(tl_step *step) {
+    tl_header *h = step->h;
+    float gravity = tl_length(h->settings.gravity);
+    finder f = {h, LOADED * gravity * step->sub / step->warm_scale, tl_linkage_queue(h), tl_linkage_rows(h), 0, 0};
+    h->presses = h->pressed = h->counters.contacts_pressed = h->counters.contacts_left = 0;
+    if (!(f.least > 0.0f) || !any_unlike(h)) {
+        return;
+    }
+    memset(f.pressed, 0, (h->awake_bodies + 1u) * sizeof(uint32_t));
+    find_first(&f);
+    if (f.found > 0) {
+        find_rest(&f);
+        collect(&f);
+        if (f.count == h->pressed) {
+            make_presses(&f);
+        } else { /* part of what bears a load is worse than nothing: the rest would give way to it */
+            h->counters.contacts_left = f.count;
+        }
+    }
+}
