@@ -19,21 +19,28 @@ static inline uint32_t tl_bit_lowest(uint64_t word) {
     return number[((word & (0u - word)) * 0x022fdd63cc95386du) >> 58];
 }
 
+/* How many bits of a word are 1: sums of two, four, eight bits side by side (Knuth TAOCP 4A, 7.1.3). */
 static inline uint32_t tl_bit_count(uint64_t word) {
-    uint32_t n = 0;
+    word -= word >> 1 & 0x5555555555555555u;
+    word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
+    word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    return (uint32_t)(word * 0x0101010101010101u >> 56);
+}
+
+/* The members of one word, counted from `first`, ascending, into `out`; returns how many there are. */
+static inline uint32_t tl_bit_members(uint64_t word, uint32_t first, uint32_t *out) {
+    uint32_t count = 0;
     for (; word; word &= word - 1u) {
-        n++;
+        out[count++] = first + tl_bit_lowest(word);
     }
-    return n;
+    return count;
 }
 
 /* The members below `bits`, ascending, into `out`; returns how many there are. */
 static inline uint32_t tl_bit_list(const uint64_t *set, uint32_t bits, uint32_t *out) {
     uint32_t count = 0;
     for (uint32_t w = 0; w < tl_bit_words(bits); w++) {
-        for (uint64_t word = set[w]; word; word &= word - 1u) {
-            out[count++] = w * 64u + tl_bit_lowest(word);
-        }
+        count += tl_bit_members(set[w], w * 64u, out + count);
     }
     return count;
 }

@@ -4,6 +4,7 @@
 
 #define BLOCK 32u /* bytes */
 #define RUN 256u
+#define MANY 8u /* runs */
 
 /* The word of a block that comes k-th: of members of eight bytes the low half comes first. */
 static size_t place_of(size_t k, size_t word) { return word == 8u && tl_high_byte_first() ? k ^ 1u : k; }
@@ -53,6 +54,9 @@ static int counts_on(const unsigned char *now, const unsigned char *before, cons
     return !other;
 }
 
+/* Whether the rows before are there from the first byte on. */
+static int has_before(size_t at, size_t stride, int counting) { return at >= (counting ? 2u : 1u) * first_of(stride); }
+
 /* Whether all bytes of a run, whole blocks, are as their rows before let expect. */
 static int run_goes_on(const unsigned char *now, size_t stride, int counting) {
     if (!counting) {
@@ -70,6 +74,12 @@ static int run_goes_on(const unsigned char *now, size_t stride, int counting) {
     return !other;
 }
 
+/* The same of MANY runs at once, as most of a state goes on; 0 too where there are less, or rows count. */
+static int many_go_on(const unsigned char *data, size_t at, size_t bytes, size_t stride, int counting) {
+    return !counting && bytes - at >= MANY * RUN && has_before(at, stride, 0) &&
+           memcmp(data + at, data + at - stride, MANY * RUN) == 0;
+}
+
 /* Writes the words of a block that are not as expected; returns where it ended, p if all are. */
 static unsigned char *pack_block(unsigned char *p, const unsigned char *now, const unsigned char *before,
                                  const unsigned char *earlier, size_t bytes, size_t word) {
@@ -82,9 +92,9 @@ static unsigned char *pack_block(unsigned char *p, const unsigned char *now, con
             return p;
         }
         *p = (unsigned char)mask;
-        if (mask == 0x7fu || mask == 0xffu || mask == 0x3fu) {
+        if ((mask & (mask + 1u)) == 0) {
             memcpy(p + 1, now, BLOCK);
-            return p + 1 + (mask == 0xffu ? 32 : mask == 0x7fu ? 28 : 24);
+            return p + 1 + 4u * tl_bit_count(mask);
         }
     }
     uint32_t mask = 0;
@@ -116,12 +126,17 @@ static rows_before before_of(const unsigned char *data, size_t at, size_t stride
 unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, size_t stride, size_t word,
                             int counting) {
     const unsigned char *data = rows;
-    size_t bytes = count * stride, first = first_of(stride);
+    size_t bytes = count * stride;
     for (size_t at = 0; at < bytes;) {
+        if (many_go_on(data, at, bytes, stride, counting)) {
+            memset(p, 0, MANY);
+            p += MANY, at += MANY * RUN;
+            continue;
+        }
         size_t run = least(RUN, bytes - at);
         unsigned char *blocks = p++;
         *blocks = 0;
-        if (run == RUN && at >= (counting ? 2u : 1u) * first && run_goes_on(data + at, stride, counting)) {
+        if (run == RUN && has_before(at, stride, counting) && run_goes_on(data + at, stride, counting)) {
             at += run;
             continue;
         }
@@ -140,21 +155,53 @@ size_t tl_pack_bound(size_t count, size_t stride) {
     return bytes + bytes / BLOCK + bytes / RUN + 2u + 32u;
 }
 
-static void put_marks(tl_marks *marks, size_t first, size_t last) {
-    marks->count += (uint32_t)(last - first) + 1u;
-    for (size_t row = first; marks->first && row <= last; row++) {
+/* Marks the rows that have one of the words, by bits, of the block at `at`. */
+static void put_marks(tl_marks *marks, size_t at, size_t stride, uint32_t words) {
+    marks->count++;
+    if (!marks->first) {
+        return;
+    }
+    for (size_t row = at / stride; row * stride < at + BLOCK; row++) {
+        size_t from = row * stride < at ? 0 : row * stride - at, to = least(BLOCK, (row + 1u) * stride - at);
         uint32_t *m = marks->first + row * marks->stride;
-        *m = *m < marks->value ? marks->value : *m;
+        if (words >> from / 4u & ((1u << (to - from) / 4u) - 1u)) {
+            *m = *m < marks->value ? marks->value : *m;
+        }
     }
 }
 
+/* A whole block of which the first `count` words stand at p and the others are those of the row before; returns whether
+ * that changes it. */
+static int unpack_first_words(const unsigned char *p, unsigned char *to, const unsigned char *before, uint32_t count) {
+    static const uint32_t number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    uint32_t w[8], b[8], was[8], other = 0;
+    memcpy(w, p, BLOCK);
+    memcpy(b, before, BLOCK);
+    memcpy(was, to, BLOCK);
+    for (unsigned k = 0; k < 8u; k++) {
+        w[k] = number[k] < count ? w[k] : b[k];
+        other |= w[k] ^ was[k];
+    }
+    if (other) { /* the next row waits for what is written here */
+        memcpy(to, w, BLOCK);
+    }
+    return other != 0;
+}
+
 /* Puts a block in its place: words of `mask` from p, the others from the row before. Returns where it ended, or null;
- * *other is not 0 if that changes the block. */
+ * *other are the words that this changes, or all of them. */
 static const unsigned char *unpack_block(const unsigned char *p, const unsigned char *end, unsigned char *to,
-                                         rows_before rows, size_t bytes, size_t word, uint32_t mask, uint32_t *other) {
-    if (end - p < (ptrdiff_t)(4u * 8u) && end - p < (ptrdiff_t)(4u * tl_bit_count(mask))) {
+                                         rows_before rows, size_t stride, size_t bytes, size_t word, uint32_t mask,
+                                         uint32_t *other) {
+    if (bytes == BLOCK && (mask & (mask + 1u)) == 0 && !rows.earlier && rows.before && stride >= BLOCK &&
+        end - p >= (ptrdiff_t)BLOCK && !tl_high_byte_first()) { /* the usual case by whole copies */
+        *other = unpack_first_words(p, to, rows.before, tl_bit_count(mask)) ? 0xffu : 0u;
+        return p + 4u * tl_bit_count(mask);
+    }
+    if (end - p < (ptrdiff_t)(4u * tl_bit_count(mask))) {
         return NULL;
     }
+    *other = 0;
     for (size_t k = 0; k < bytes / 4u; k++) {
         size_t at = 4u * place_of(k, word);
         uint32_t was, w;
@@ -165,7 +212,7 @@ static const unsigned char *unpack_block(const unsigned char *p, const unsigned 
         } else { /* a row before may lie in this very block */
             w = guess(rows.before, rows.earlier, at);
         }
-        *other |= w ^ was;
+        *other |= (uint32_t)(w != was) << at / 4u;
         memcpy(to + at, &w, 4);
     }
     return p;
@@ -174,34 +221,36 @@ static const unsigned char *unpack_block(const unsigned char *p, const unsigned 
 const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char *end, void *rows, size_t count,
                                     size_t stride, size_t word, int counting, tl_marks *marks) {
     unsigned char *data = rows;
-    size_t bytes = count * stride, first = first_of(stride);
+    size_t bytes = count * stride;
     for (size_t at = 0; at < bytes;) {
         if (p >= end) {
             return NULL;
         }
+        if (end - p >= (ptrdiff_t)MANY && tl_get_long_word(p) == 0 && many_go_on(data, at, bytes, stride, counting)) {
+            p += MANY, at += MANY * RUN; /* as it should be */
+            continue;
+        }
         uint32_t blocks = *p++;
         size_t run = least(RUN, bytes - at);
-        if (blocks == 0 && run == RUN && at >= (counting ? 2u : 1u) * first &&
-            run_goes_on(data + at, stride, counting)) {
-            at += run; /* as it should be */
+        if (blocks == 0 && run == RUN && has_before(at, stride, counting) && run_goes_on(data + at, stride, counting)) {
+            at += run;
             continue;
         }
         for (unsigned k = 0; k < RUN / BLOCK && at < bytes; k++, at += least(BLOCK, bytes - at)) {
-            size_t size = least(BLOCK, bytes - at);
-            uint32_t mask = 0, other = 0;
+            uint32_t mask = 0, other;
             if (blocks >> k & 1u) {
                 if (p >= end) {
                     return NULL;
                 }
                 mask = *p++;
             }
-            rows_before r = before_of(data, at, stride, counting);
-            p = unpack_block(p, end, data + at, r, size, word, mask, &other);
+            p = unpack_block(p, end, data + at, before_of(data, at, stride, counting), stride, least(BLOCK, bytes - at),
+                             word, mask, &other);
             if (!p) {
                 return NULL;
             }
             if (other) {
-                put_marks(marks, at / stride, (at + size - 1u) / stride);
+                put_marks(marks, at, stride, other);
             }
         }
     }

@@ -11,8 +11,8 @@ unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, si
 /* The most bytes that tl_pack_rows writes. */
 size_t tl_pack_bound(size_t count, size_t stride);
 
-/* Puts the rows back in place. Where a row becomes another than it was, its mark becomes `value` if it was less, and
- * `count` goes up; `first` may be null. Returns where it ended, or null if the bytes end before. */
+/* Puts the rows back in place. Where a row becomes another than it was, its mark becomes `value` if it was less;
+ * `count` is 0 if none does; `first` may be null. Returns where it ended, or null if the bytes end before. */
 typedef struct tl_marks {
     uint32_t *first;
     size_t stride; /* in words */

@@ -1,142 +1,225 @@
+/* For each word of contact_alive the word, then the contacts that it says are there. A contact begins with its code:
+ * how many points it has, colour, flags, what of the rest there is, and the signs of friction and twist. Then shapes,
+ * motion, normal; friction and twist, if any is more than a sign; the words of its cache up to the last that is not 0;
+ * its points, each with the id last.
+ *
+ * Which contact has how many points and what of the rest is as good as random. A branch on it would be guessed wrong
+ * every other time, and that cost more than all else here: so the most that a contact may have is copied, and stepped
+ * over as far as it is there. */
 #include "world/pack_contact.h"
 
 #include "base/bits.h"
 #include "base/bytes.h"
-#include "world/reindex.h"
 
-/* A contact begins with a word: count (3 bits), colour (7), flags (8), whether friction is at work (1), whether the
- * ids need more than 16 bits (1), which points press (4) and which words the cache holds (4). Then shapes, motion,
- * normal, and what of the rest is not nothing. */
-enum { AT_COLOR = 3, AT_FLAGS = 10, AT_FRICTION = 18, AT_WIDE = 19, AT_PRESSED = 20, AT_CACHE = 24 };
+/* Where the parts of a code are: count (3 bits), colour (7), flags (8), whether friction or twist are not 0 (1), words
+ * of the cache (3), whether ids need 4 bytes and not 3 (1), signs (4). */
+enum { AT_COLOR = 3, AT_FLAGS = 10, AT_RUBS = 18, AT_CACHE = 19, AT_WIDE = 22, AT_SIGNS = 23 };
 
-static uint32_t word_of(float x) {
-    uint32_t w;
-    memcpy(&w, &x, 4);
-    return w;
+#define POINTS TL_MANIFOLD_POINTS
+#define POINT 32u                                         /* bytes of a point at most */
+#define MOST (4u + 8u + 16u + 16u + 16u + POINT * POINTS) /* bytes of a contact */
+static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
+
+#define SIGNS 0x8000000080000000u
+
+/* The kind of an id is its two highest bits (tl_point_id). With them lowest three bytes are enough for most. */
+static uint32_t turned(uint32_t id) { return id << 2 | id >> 30; }
+static uint32_t turned_back(uint32_t id) { return id >> 2 | id << 30; }
+
+/* The columns. */
+typedef struct slots {
+    tl_contact_meta *metas;
+    tl_contact_head *heads;
+    tl_contact_points *points;
+    tl_pair_cache *caches;
+    int few_shapes; /* then they take half a word each */
+} slots;
+
+static slots slots_of(const tl_header *h) {
+    slots s = {tl_contacts(h), tl_heads(h), tl_points(h), tl_contact_caches(h), h->shapes.high <= 0x10000u};
+    return s;
 }
 
-static uint32_t bit(uint32_t code, uint32_t at) { return code >> at & 1u; }
-
-/* Shapes take half a word each as long as there are few. */
-static int few_shapes(const tl_header *h) { return h->shapes.high <= 0x10000u; }
-
-static uint32_t code_of(const tl_contact_meta *m, const tl_contact_head *head, const tl_contact_points *points,
-                        const tl_pair_cache *cache) {
-    uint32_t friction =
-        word_of(head->friction[0]) | word_of(head->friction[1]) | word_of(head->friction[2]) | word_of(head->twist);
-    uint32_t code = m->count | m->color << AT_COLOR | m->flags << AT_FLAGS | (uint32_t)(friction != 0) << AT_FRICTION;
-    uint32_t ids = 0;
-    for (uint32_t i = 0; i < m->count; i++) {
-        ids |= points->p[i].id;
-        code |= (uint32_t)(word_of(points->p[i].impulse) != 0) << (AT_PRESSED + i);
-    }
-    for (uint32_t i = 0; i < 4u; i++) {
-        code |= (uint32_t)(cache->word[i] != 0) << (AT_CACHE + i);
-    }
-    return code | (uint32_t)(ids > 0xffffu) << AT_WIDE;
+size_t tl_pack_contacts_bound(const tl_header *h) {
+    return 8u * (size_t)tl_bit_words(h->contacts.high) + (size_t)h->contacts.used * MOST;
 }
 
-unsigned char *tl_pack_contact(unsigned char *p, const tl_header *h, uint32_t contact) {
-    const tl_contact_meta *m = &tl_contacts(h)[contact];
-    const tl_contact_head *head = &tl_heads(h)[contact];
-    const tl_contact_points *points = &tl_points(h)[contact];
-    const tl_pair_cache *cache = &tl_contact_caches(h)[contact];
-    uint32_t code = code_of(m, head, points, cache);
-    p = tl_put_word(p, code);
-    if (few_shapes(h)) {
+/* --- packing ---------------------------------------------------------------------------------- */
+
+static uint32_t cache_words(const tl_pair_cache *cache) {
+    uint32_t words = cache->word[0] != 0;
+    words = cache->word[1] ? 2u : words;
+    words = cache->word[2] ? 3u : words;
+    return cache->word[3] ? 4u : words;
+}
+
+/* The signs of two floats of a pair, and back. */
+static uint32_t signs_of(uint64_t pair) { return (uint32_t)(((pair & SIGNS) | (pair & SIGNS) << 31) >> 62); }
+static uint64_t with_signs(uint32_t signs) { return (uint64_t)(signs & 1u) << 31 | (uint64_t)(signs & 2u) << 62; }
+
+/* Friction and twist as two pairs of floats, the first of each lowest. */
+static uint64_t pair_of(const uint32_t *words) { return words[0] | (uint64_t)words[1] << 32; }
+
+static void put_point(unsigned char *p, const tl_contact_point_record *r) {
+    tl_put_words(p, r->a, 7); /* and b and the impulse */
+    tl_put_word(p + 28, turned(r->id));
+}
+
+static unsigned char *put_contact(unsigned char *p, const slots *s, uint32_t contact) {
+    const tl_contact_meta *m = &s->metas[contact];
+    const tl_contact_head *head = &s->heads[contact];
+    const tl_pair_cache *cache = &s->caches[contact];
+    uint32_t count = m->count, cached = cache_words(cache), friction[4];
+    uint32_t last = count - 1u; /* is taken again for points that are not there */
+    const tl_contact_point_record *r = s->points[contact].p;
+    const tl_contact_point_record *r1 = &r[least(1, last)], *r2 = &r[least(2, last)], *r3 = &r[least(3, last)];
+    uint32_t wide = (turned(r->id) | turned(r1->id) | turned(r2->id) | turned(r3->id)) >> 24 != 0;
+    memcpy(friction, head->friction, 16); /* and the twist */
+    uint64_t f = pair_of(friction), g = pair_of(friction + 2);
+    uint32_t rubs = ((f | g) & ~SIGNS) != 0;
+    p = tl_put_word(p, count | m->color << AT_COLOR | m->flags << AT_FLAGS | rubs << AT_RUBS | cached << AT_CACHE |
+                           wide << AT_WIDE | (signs_of(f) | signs_of(g) << 2) << AT_SIGNS);
+    if (s->few_shapes) {
         p = tl_put_word(p, m->shape_a | m->shape_b << 16);
     } else {
         p = tl_put_word(tl_put_word(p, m->shape_a), m->shape_b);
     }
     p = tl_put_word(p, m->motion);
-    p = tl_put_words(p, head->normal, 3);
-    tl_put_words(p, head->friction, 4); /* and the twist */
-    p += 16u * bit(code, AT_FRICTION);
-    for (uint32_t i = 0; i < 4u; i++) {
-        if (bit(code, AT_CACHE + i)) {
-            p = tl_put_word(p, cache->word[i]);
+    tl_put_words(p, head->normal, 7); /* and friction and twist */
+    p += 12u + 16u * rubs;
+    tl_put_words(p, cache->word, 4);
+    p += 4u * cached;
+    size_t point = 31u + wide;
+    put_point(p, r);
+    put_point(p + point, r1);
+    put_point(p + 2u * point, r2);
+    put_point(p + 3u * point, r3);
+    return p + point * count;
+}
+
+unsigned char *tl_pack_contacts(unsigned char *p, const tl_header *h) {
+    const slots s = slots_of(h);
+    const uint64_t *alive = tl_contact_alive(h);
+    for (uint32_t w = 0, words = tl_bit_words(h->contacts.high); w < words; w++) {
+        p = tl_put_word(tl_put_word(p, (uint32_t)alive[w]), (uint32_t)(alive[w] >> 32));
+        for (uint64_t word = alive[w]; word; word &= word - 1u) {
+            p = put_contact(p, &s, 64u * w + tl_bit_lowest(word));
         }
-    }
-    size_t id = bit(code, AT_WIDE) ? 4u : 2u;
-    for (uint32_t i = 0; i < m->count; i++) {
-        const tl_contact_point_record *r = &points->p[i];
-        tl_put_words(p, r->a, 7); /* and b and the impulse */
-        p += 24u + 4u * bit(code, AT_PRESSED + i);
-        tl_put_word(p, r->id);
-        p += id;
     }
     return p;
 }
 
-static size_t bytes_of(const tl_header *h, uint32_t code) {
-    uint32_t count = code & 7u;
-    return 8u + (few_shapes(h) ? 4u : 8u) + 12u + 16u * bit(code, AT_FRICTION) +
-           4u * tl_bit_count(code >> AT_PRESSED & 255u) + count * (24u + (bit(code, AT_WIDE) ? 4u : 2u));
+/* --- unpacking -------------------------------------------------------------------------------- */
+
+static void get_point(const unsigned char *p, tl_contact_point_record *r, uint32_t id_mask) {
+    tl_get_words(p, r->a, 7); /* and b and the impulse */
+    r->id = turned_back(tl_get_word(p + 28) & id_mask);
 }
 
-const unsigned char *tl_unpack_contact(const unsigned char *p, const unsigned char *end, tl_header *h,
-                                       uint32_t contact) {
-    unsigned char last[TL_PACK_CONTACT_MOST];
-    const unsigned char *from = p;
-    if ((size_t)(end - p) < sizeof last) { /* as many are read whatever it takes */
-        memset(last, 0, sizeof last);
-        memcpy(last, p, (size_t)(end - p));
-        p = last;
-    }
-    uint32_t code = tl_get_word(p), count = code & 7u;
-    size_t bytes = bytes_of(h, code);
-    if (count > TL_MANIFOLD_POINTS || (code >> AT_PRESSED & 15u) >> count || (size_t)(end - from) < bytes) {
+/* Friction and twist, of which there is nothing but the signs if the contact does not rub. */
+static void get_friction(const unsigned char *p, float *friction, uint32_t code, uint64_t rubs) {
+    uint64_t f = (tl_get_long_word(p) & (0u - rubs)) | with_signs(code >> AT_SIGNS);
+    uint64_t g = (tl_get_long_word(p + 8) & (0u - rubs)) | with_signs(code >> (AT_SIGNS + 2));
+    uint32_t words[4] = {(uint32_t)f, (uint32_t)(f >> 32), (uint32_t)g, (uint32_t)(g >> 32)};
+    memcpy(friction, words, 16);
+}
+
+static const uint32_t FIRST_WORDS[5][4] = {
+    {0, 0, 0, 0}, {~0u, 0, 0, 0}, {~0u, ~0u, 0, 0}, {~0u, ~0u, ~0u, 0}, {~0u, ~0u, ~0u, ~0u}};
+
+/* A contact's bytes from p on, MOST of which can be read. Returns where they end, or null if they are no contact. */
+static const unsigned char *get_contact(const unsigned char *p, const slots *s, tl_header *h, uint32_t contact) {
+    uint32_t code = tl_get_word(p), shape_a = tl_get_word(p + 4), shape_b = shape_a >> 16;
+    uint32_t count = code & 7u, color = code >> AT_COLOR & 127u, flags = code >> AT_FLAGS & 255u;
+    uint32_t rubs = code >> AT_RUBS & 1u, cached = code >> AT_CACHE & 7u, wide = code >> AT_WIDE & 1u;
+    if (count > POINTS || cached > 4u || !(flags & TL_CONTACT_ALIVE) || color > TL_COLORS) {
         return NULL;
     }
-    tl_contact_meta *m = &tl_contacts(h)[contact];
-    tl_contact_head *head = &tl_heads(h)[contact];
-    tl_contact_points *points = &tl_points(h)[contact];
-    tl_pair_cache *cache = &tl_contact_caches(h)[contact];
-    uint32_t shape_a = tl_get_word(p + 4), shape_b = shape_a >> 16;
-    if (few_shapes(h)) {
+    if (s->few_shapes) {
         shape_a &= 0xffffu;
         p += 8;
     } else {
         shape_b = tl_get_word(p + 8);
         p += 12;
     }
-    uint32_t color = code >> AT_COLOR & 127u, flags = code >> AT_FLAGS & 255u;
-    if (!(flags & TL_CONTACT_ALIVE) || color > TL_COLORS) {
-        return NULL;
-    }
+    tl_contact_meta *m = &s->metas[contact];
+    tl_contact_point_record *r = s->points[contact].p;
     if ((m->shape_a ^ shape_a) | (m->shape_b ^ shape_b) | (m->color ^ color) |
         ((m->flags ^ flags) & (TL_CONTACT_ALIVE | TL_CONTACT_COLORED))) {
         tl_reindex_part_contact(h, contact);
     }
-    for (uint32_t i = count; i < m->count && i < TL_MANIFOLD_POINTS; i++) {
-        memset(&points->p[i], 0, sizeof points->p[i]);
+    m->motion = tl_get_word(p);
+    tl_get_words(p + 4, s->heads[contact].normal, 3);
+    get_friction(p + 16, s->heads[contact].friction, code, rubs);
+    p += 16u + 16u * rubs;
+    uint32_t cache[4];
+    tl_get_words(p, cache, 4);
+    for (uint32_t i = 0; i < 4u; i++) {
+        cache[i] &= FIRST_WORDS[cached][i];
+    }
+    memcpy(s->caches[contact].word, cache, 16);
+    p += 4u * cached;
+    size_t point = 31u + wide;
+    uint32_t last = count - 1u, id_mask = ~(uint32_t)0 >> (wide ? 0 : 8);
+    get_point(p + 3u * point, &r[least(3, last)],
+              id_mask); /* points that are not there go where the last one follows */
+    get_point(p + 2u * point, &r[least(2, last)], id_mask);
+    get_point(p + point, &r[least(1, last)], id_mask);
+    get_point(p, r, id_mask);
+    if (count < m->count || !count) {
+        memset(&r[count], 0, (POINTS - count) * sizeof *r);
     }
     m->count = count, m->color = color, m->flags = flags;
     m->shape_a = shape_a, m->shape_b = shape_b;
-    m->motion = tl_get_word(p);
-    tl_get_words(p + 4, head->normal, 3);
-    p += 16;
-    memset(head->friction, 0, 16);
-    if (bit(code, AT_FRICTION)) {
-        tl_get_words(p, head->friction, 4);
-        p += 16;
+    return p + point * count;
+}
+
+/* The same where the bytes may end before. */
+static const unsigned char *get_last_contact(const unsigned char *p, const unsigned char *end, const slots *s,
+                                             tl_header *h, uint32_t contact) {
+    unsigned char bytes[MOST];
+    size_t left = (size_t)(end - p);
+    memset(bytes, 0, sizeof bytes);
+    memcpy(bytes, p, left);
+    const unsigned char *q = get_contact(bytes, s, h, contact);
+    return q && (size_t)(q - bytes) <= left ? p + (q - bytes) : NULL;
+}
+
+/* The contacts of one word of contact_alive, which was `was`. */
+static const unsigned char *get_word(const unsigned char *p, const unsigned char *end, const slots *s, tl_header *h,
+                                     uint32_t w, tl_changes *changes) {
+    uint64_t *alive = &tl_contact_alive(h)[w];
+    uint32_t high = h->contacts.high - 64u * w, *order = tl_contact_order(h);
+    uint64_t all = high < 64u ? ((uint64_t)1 << high) - 1u : ~(uint64_t)0;
+    if (end - p < 8 || (tl_get_long_word(p) & ~all)) {
+        return NULL;
     }
-    memset(cache, 0, sizeof *cache);
-    for (uint32_t i = 0; i < 4u; i++) {
-        if (bit(code, AT_CACHE + i)) {
-            cache->word[i] = tl_get_word(p);
-            p += 4;
-        }
+    uint64_t gone = *alive & all & ~tl_get_long_word(p);
+    *alive = tl_get_long_word(p);
+    p += 8;
+    for (; gone; gone &= gone - 1u) {
+        uint32_t contact = 64u * w + tl_bit_lowest(gone);
+        tl_reindex_part_contact(h, contact);
+        tl_contact_clear(h, contact);
     }
-    uint32_t wide = bit(code, AT_WIDE);
-    for (uint32_t i = 0; i < count; i++) {
-        tl_contact_point_record *r = &points->p[i];
-        uint32_t pressed = bit(code, AT_PRESSED + i), impulse = tl_get_word(p + 24) & (0u - pressed);
-        tl_get_words(p, r->a, 6);
-        memcpy(&r->impulse, &impulse, 4);
-        p += 24u + 4u * pressed;
-        r->id = tl_get_word(p) & (wide ? ~(uint32_t)0 : 0xffffu);
-        p += wide ? 4 : 2;
+    for (uint64_t word = *alive; word && p; word &= word - 1u) {
+        uint32_t contact = 64u * w + tl_bit_lowest(word);
+        p = (size_t)(end - p) < MOST ? get_last_contact(p, end, s, h, contact) : get_contact(p, s, h, contact);
+        order[changes->contacts] = contact;
+        changes->contacts += s->metas[contact].body_a == TL_NONE;
     }
-    return from + bytes;
+    return p;
+}
+
+const unsigned char *tl_unpack_contacts(const unsigned char *p, const unsigned char *end, tl_header *h,
+                                        tl_changes *changes) {
+    const slots s = slots_of(h);
+    uint64_t *alive = tl_contact_alive(h);
+    uint32_t words = tl_bit_words(h->contacts.high), used = 0;
+    for (uint32_t w = 0; w < words && p; w++) {
+        p = get_word(p, end, &s, h, w, changes);
+        used += tl_bit_count(alive[w]);
+    }
+    memset(alive + words, 0, (h->capacity[TL_COUNT_CONTACTBIT] - words) * sizeof *alive);
+    return used == h->contacts.used && tl_bit_end(alive, 64u * words) == h->contacts.high ? p : NULL;
 }

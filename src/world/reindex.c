@@ -104,7 +104,7 @@ static int are_shapes(const tl_header *h, const tl_contact_meta *m) {
 /* --- shapes and pairs -------------------------------------------------------------------------- */
 
 static void renew_pairs(tl_header *h) {
-    const uint32_t *other = tl_island_parent(h);
+    const uint32_t *other = tl_island_parent(h), *way = tl_body_way(h);
     const tl_shape_track *tracks = tl_shape_tracks(h);
     for (uint32_t i = 0; i < h->pairs.high; i++) {
         tl_pair *p = &tl_pairs(h)[i];
@@ -113,27 +113,22 @@ static void renew_pairs(tl_header *h) {
         }
         if (tracks[p->shape_a].stale == TL_SHAPE_OTHER || tracks[p->shape_b].stale == TL_SHAPE_OTHER) {
             tl_pair_end(h, i);
-        } else if (other[p->body_a] | other[p->body_b]) {
+        } else if ((other[p->body_a] | other[p->body_b]) || ((way[p->body_a] | way[p->body_b]) & TL_WAY_DOUBTED)) {
             p->clear = 0;
         }
     }
+    memset(tl_body_way(h), 0, h->capacity[TL_COUNT_BODY] * sizeof(uint32_t)); /* there is no doubt left */
 }
 
 /* Where bodies alone became others, pairs are kept, but not what they know. */
 static void doubt_pairs(tl_header *h) {
     const uint32_t *other = tl_island_parent(h), *rows = tl_body_row(h);
-    const tl_pair_link *links = tl_pair_links(h);
-    uint32_t awake = 0;
-    for (uint32_t k = 0; k < h->awake_bodies; k++) {
-        awake += other[tl_awake_body(h)[k]];
-    }
-    h->pairs_doubted |= (uint32_t)(2u * awake > h->awake_bodies); /* then all of them, without a look at each */
     for (uint32_t i = 0; i < h->bodies.high; i++) {
-        if (!other[i] || (rows[i] && h->pairs_doubted)) {
-            continue;
-        }
-        for (uint32_t l = tl_body_links(h)[i].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
-            tl_pairs(h)[l >> 1].clear = 0;
+        if (other[i] && rows[i]) { /* without a look at each pair, which lie in no order */
+            tl_body_way(h)[i] |= TL_WAY_DOUBTED;
+            h->doubted = 1;
+        } else if (other[i]) {
+            tl_pairs_doubt(h, i);
         }
     }
 }
@@ -191,7 +186,6 @@ static int are_as_awake(const tl_header *h, uint32_t before) {
 
 static void renew_awake(tl_header *h) {
     memset(tl_body_row(h), 0, h->capacity[TL_COUNT_BODY] * sizeof(uint32_t));
-    memset(tl_body_way(h), 0, h->capacity[TL_COUNT_BODY] * sizeof(uint32_t));
     h->awake_bodies = h->awake_pairs = 0;
     for (uint32_t i = 0; i < h->bodies.high; i++) {
         if (is_awake(&tl_bodies(h)[i])) {

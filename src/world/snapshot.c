@@ -5,15 +5,13 @@
 
 #include <string.h>
 
-#include "base/bits.h"
 #include "talus/command.h"
 #include "world/pack.h"
 #include "world/pack_contact.h"
-#include "world/reindex.h"
 #include "world/world_internal.h"
 
 #define SNAPSHOT_MAGIC 0x50534c54u /* "TLSP" */
-#define SNAPSHOT_VERSION 2u
+#define SNAPSHOT_VERSION 3u
 
 /* Words of the head: magic, version, bytes, checksum (low, high), then the capacities. */
 enum { HEAD_MAGIC, HEAD_VERSION, HEAD_BYTES, HEAD_SUM, HEAD_SUM_HIGH, HEAD_CAPACITY, HEAD_WORDS = HEAD_CAPACITY + 5 };
@@ -43,8 +41,7 @@ static int counts(tl_column_id column) { return column == TL_COLUMN_bodies || co
 /* --- saving ----------------------------------------------------------------------------------- */
 
 static size_t most_bytes(const tl_header *h) {
-    size_t size = 4u * (HEAD_WORDS + state_words()) + 8u * (size_t)tl_bit_words(h->contacts.high) +
-                  (size_t)h->contacts.used * TL_PACK_CONTACT_MOST;
+    size_t size = 4u * (HEAD_WORDS + state_words()) + tl_pack_contacts_bound(h);
     for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
         tl_live live;
         if (is_packed((tl_column_id)i) && tl_store_state(h, (tl_column_id)i, &live)) {
@@ -87,14 +84,7 @@ talus_status talus_world_save(const talus_world *world, void *out, size_t bytes,
             p = tl_pack_rows(p, live.data, live.rows, live.row_bytes, live.word, counts((tl_column_id)i));
         }
     }
-    const uint64_t *alive = tl_contact_alive(h);
-    for (uint32_t w = 0; w < tl_bit_words(h->contacts.high); w++) {
-        p = tl_put_word(tl_put_word(p, (uint32_t)alive[w]), (uint32_t)(alive[w] >> 32));
-        for (uint64_t word = alive[w]; word; word &= word - 1u) {
-            p = tl_pack_contact(p, h, w * 64u + tl_bit_lowest(word));
-        }
-    }
-    size_t size = (size_t)(p - first);
+    size_t size = (size_t)(tl_pack_contacts(p, h) - first);
     tl_put_word(first + 4u * HEAD_BYTES, (uint32_t)size);
     uint64_t sum = tl_pack_checksum(first + HEAD_CHECKED, size - HEAD_CHECKED);
     tl_put_word(first + 4u * HEAD_SUM, (uint32_t)sum);
@@ -195,40 +185,6 @@ static const unsigned char *get_columns(const unsigned char *p, const unsigned c
     return p;
 }
 
-static const unsigned char *get_contacts(const unsigned char *p, const unsigned char *end, tl_header *h,
-                                         tl_changes *changes) {
-    uint64_t *alive = tl_contact_alive(h);
-    uint32_t used = 0;
-    memset(alive, 0, (size_t)h->capacity[TL_COUNT_CONTACTBIT] * 8u);
-    for (uint32_t w = 0; w < tl_bit_words(h->contacts.high); w++) {
-        if (end - p < 8) {
-            return NULL;
-        }
-        alive[w] = tl_get_long_word(p);
-        p += 8;
-        for (uint32_t c = w * 64u; c < h->contacts.high && c < w * 64u + 64u; c++) {
-            if (!tl_bit_has(alive, c)) {
-                if (tl_contacts(h)[c].flags) {
-                    tl_reindex_part_contact(h, c);
-                    tl_contact_clear(h, c);
-                }
-                continue;
-            }
-            p = tl_unpack_contact(p, end, h, c);
-            used++;
-            if (!p) {
-                return NULL;
-            }
-            if (tl_contacts(h)[c].body_a == TL_NONE) {
-                tl_contact_order(h)[changes->contacts++] = c;
-            }
-        }
-    }
-    return used == h->contacts.used && tl_bit_end(alive, h->capacity[TL_COUNT_CONTACTBIT] * 64u) == h->contacts.high
-               ? p
-               : NULL;
-}
-
 talus_status talus_world_restore(talus_world *world, const void *snapshot, size_t bytes) {
     if (!tl_world_is_sound(world) || !snapshot) {
         return TALUS_BAD_ARGUMENT;
@@ -247,7 +203,7 @@ talus_status talus_world_restore(talus_world *world, const void *snapshot, size_
     memcpy(state_of(h), state_of(&next), 4u * state_words());
     p = get_columns(p + 4u * (HEAD_WORDS + state_words()), end, h, &before, &changes);
     if (p) {
-        p = get_contacts(p, end, h, &changes);
+        p = tl_unpack_contacts(p, end, h, &changes);
     }
     if (p != end || tl_reindex_end(h, &before, &changes) != TALUS_OK) {
         /* Made to deceive: the checksum holds and the contents do not. Nothing of it is kept. */

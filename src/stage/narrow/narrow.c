@@ -43,13 +43,14 @@ static int touches(tl_step *step, uint32_t shape_a, uint32_t shape_b, tl_pair_ca
     return m.count > 0 && may_touch(step, shape_a, shape_b);
 }
 
-/* Micrometres that each awake body may go in the step. */
+/* Micrometres that each awake body may go in the step; doubts stay. */
 static void measure_ways(tl_step *step) {
     tl_header *h = step->h;
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t body = tl_awake_body(h)[k];
         float way = tl_length(tl_row_xyz(&tl_body_velocity(h)[body])) * step->dt;
-        tl_body_way(h)[body] = way > 0.0f ? 1u + (uint32_t)tl_min(way * 1.001e6f, 1e9f) : 0u;
+        uint32_t most = way > 0.0f ? 1u + (uint32_t)tl_min(way * 1.001e6f, 1e9f) : 0u;
+        tl_body_way(h)[body] = most | (tl_body_way(h)[body] & TL_WAY_DOUBTED);
     }
 }
 
@@ -129,7 +130,7 @@ static void look_at_batch(tl_step *step, new_touches *found, tl_pair_batch *batc
 
 static void look_at_pairs(tl_step *step, new_touches *found) {
     tl_header *h = step->h;
-    const uint32_t *motion = tl_body_motion(h), *way = tl_body_way(h), doubted = h->pairs_doubted;
+    const uint32_t *motion = tl_body_motion(h), *way = tl_body_way(h);
     tl_pair_batch batches[TL_BATCH_KINDS];
     tl_batches_begin(batches, 0);
     for (uint32_t k = 0; k < h->awake_pairs;) {
@@ -139,8 +140,9 @@ static void look_at_pairs(tl_step *step, new_touches *found) {
             tl_prefetch(&tl_pairs(h)[tl_awake_pair(h)[k + PAIRS_AHEAD]]);
         }
         uint32_t now = motion[p->body_a] + motion[p->body_b];
+        uint64_t moved = (uint64_t)(now - p->motion) + way[p->body_a] + way[p->body_b];
         k++;
-        if (p->contact != TL_NONE || (now - p->motion + way[p->body_a] + way[p->body_b] < p->clear && !doubted)) {
+        if (p->contact != TL_NONE || moved < p->clear) {
             h->counters.manifolds_kept += p->contact == TL_NONE;
             continue;
         }
@@ -163,7 +165,10 @@ static void look_at_pairs(tl_step *step, new_touches *found) {
     for (uint32_t kind = 0; kind < TL_BATCH_OTHER; kind++) {
         look_at_batch(step, found, &batches[kind]);
     }
-    h->pairs_doubted = 0;
+    for (uint32_t k = 0; h->doubted && k < h->awake_bodies; k++) {
+        tl_body_way(h)[tl_awake_body(h)[k]] &= ~TL_WAY_DOUBTED;
+    }
+    h->doubted = 0;
 }
 
 /* What there was no room to pair is looked for in the trees. */

@@ -244,6 +244,9 @@ void tl_body_clear_awake(tl_header *h, uint32_t body) {
     list[row - 1u] = last;
     rows[last] = row;
     rows[body] = 0;
+    if (tl_body_way(h)[body] & TL_WAY_DOUBTED) {
+        tl_pairs_doubt(h, body);
+    }
     tl_body_way(h)[body] = 0;
     tl_bodies(h)[body].flags &= ~(uint32_t)TL_BODY_AWAKE;
 }

@@ -99,7 +99,13 @@ static void clear_awake(tl_header *h, uint32_t pair) {
         list[at] = last;
         pairs[last].awake_index = at;
         pairs[pair].awake_index = TL_NONE;
-        pairs[pair].clear = h->pairs_doubted ? 0 : pairs[pair].clear;
+    }
+}
+
+void tl_pairs_doubt(tl_header *h, uint32_t body) {
+    const tl_pair_link *links = tl_pair_links(h);
+    for (uint32_t l = tl_body_links(h)[body].first_pair; l != TL_NONE; l = links[l >> 1].next[l & 1u]) {
+        tl_pairs(h)[l >> 1].clear = 0;
     }
 }
 

@@ -20,6 +20,8 @@ void tl_pair_end(tl_header *h, uint32_t pair);
 void tl_pair_leave_contact(tl_header *h, uint32_t pair, uint32_t clear, const tl_pair_cache *hint);
 
 void tl_pair_set_awake(tl_header *h, uint32_t pair);
+/* What a body's pairs remember of how far they are apart is void. O(pairs of the body). */
+void tl_pairs_doubt(tl_header *h, uint32_t body);
 /* Drops pairs without an awake body from awake_pair. O(awake pairs). */
 void tl_pairs_drop_sleeping(tl_header *h);
 

@@ -129,6 +129,9 @@ typedef struct tl_pair {
     uint32_t clear;       /* micrometres that they were apart beyond the speculative margin then */
 } tl_pair;
 
+/* In body_way of an awake body: more than any `clear`, so that the next narrow stage looks at all its pairs. */
+#define TL_WAY_DOUBTED 0x80000000u
+
 /* The lists of a body's pairs: links hold twice the pair's index plus the side (0: a, 1: b). */
 typedef struct tl_pair_link {
     uint32_t next[2], previous[2];

@@ -92,7 +92,7 @@ typedef struct tl_header {
     tl_pool nodes, pairs;
     uint32_t root[2]; /* of the trees: moving, still */
     uint32_t moved_shapes, awake_bodies, awake_pairs, awake_contacts, awake_joints;
-    uint32_t pairs_doubted; /* not 0: what awake pairs keep of how far they are apart (tl_pair.clear) is void */
+    uint32_t doubted; /* not 0: some awake body has TL_WAY_DOUBTED */
     talus_counters counters;
     tl_event_counts events;
     uint32_t groups, joint_groups, joint_rows, linkages, pressed, presses; /* of the last step */
