@@ -51,6 +51,29 @@ static inline talus_body box_of(talus_world *world, talus_vec3 at, talus_vec3 ha
     kit_shape(world, body, &def);
     return body;
 }
+static inline void set_mass(talus_world *world, talus_body body, float mass) {
+    talus_mass m;
+    OK(talus_body_get_mass(world, body, &m));
+    float scale = mass / m.mass;
+    m.mass = mass;
+    talus_vec3 *axes[3] = {&m.inertia.x, &m.inertia.y, &m.inertia.z};
+    for (int k = 0; k < 3; k++) {
+        *axes[k] = kit_vec(axes[k]->x * scale, axes[k]->y * scale, axes[k]->z * scale);
+    }
+    OK(talus_body_set_mass(world, body, &m));
+}
+/* The largest of each error over so many steps. */
+static inline talus_errors worst_of(talus_world *world, int steps) {
+    talus_errors worst = {0}, e;
+    for (int i = 0; i < steps; i++) {
+        kit_steps(world, 1);
+        OK(talus_world_measure(world, &e));
+        worst.overlap = fmaxf(worst.overlap, e.overlap);
+        worst.joint_linear = fmaxf(worst.joint_linear, e.joint_linear);
+        worst.joint_angular = fmaxf(worst.joint_angular, e.joint_angular);
+    }
+    return worst;
+}
 static inline talus_body ball_of(talus_world *world, talus_vec3 at, float radius, float mass, float restitution,
                                  float friction) {
     talus_body body = kit_body(world, TALUS_DYNAMIC, at);

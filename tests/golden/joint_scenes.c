@@ -37,6 +37,33 @@ static void build_chain(talus_world *world) {
     golden_joint(world, &def);
 }
 
+/* Planks on hinges between two fixed places, and boxes that fall on them. */
+static void build_bridge(talus_world *world) {
+    talus_body before = talus_world_ground(world);
+    talus_joint_def def = talus_joint_def_default();
+    talus_joint_make_revolute(&def);
+    for (int i = 0; i <= 20; i++) {
+        float x = 0.6f * (float)i;
+        def.a = before, def.b = talus_world_ground(world);
+        def.frame_b = at(x, 3.0f, 0.0f);
+        if (i < 20) {
+            def.b = golden_body(world, TALUS_DYNAMIC, golden_vec(x + 0.3f, 3.0f, 0.0f));
+            golden_box(world, def.b, golden_vec(0.28f, 0.05f, 1.0f));
+            def.frame_b = at(-0.3f, 0.0f, 0.0f);
+        }
+        def.frame_a = i ? at(0.3f, 0.0f, 0.0f) : at(0.0f, 3.0f, 0.0f);
+        def.frame_a.rotation.y = def.frame_b.rotation.y = -0.70710678f; /* x onto z */
+        def.frame_a.rotation.w = def.frame_b.rotation.w = 0.70710678f;
+        golden_joint(world, &def);
+        before = def.b;
+    }
+    for (int i = 0; i < 4; i++) {
+        float x = 4.0f + 1.3f * (float)i;
+        golden_box(world, golden_body(world, TALUS_DYNAMIC, golden_vec(x, 4.0f, golden_range(-0.4f, 0.4f))),
+                   golden_vec(0.4f, 0.4f, 0.4f));
+    }
+}
+
 static void limb(talus_world *world, talus_body a, talus_vec3 on_a, talus_vec3 place, float half) {
     talus_body b = capsule(world, place, half, 0.07f);
     talus_joint_def def = talus_joint_def_default();
@@ -175,7 +202,7 @@ static void build_sensors(talus_world *world) {
 }
 
 const golden_scene golden_more_scenes[] = {
-    {"chain", 240, build_chain, 0},   {"ragdolls", 240, build_ragdolls, 0}, {"joints", 240, build_joints, 0},
-    {"flight", 240, build_flight, 0}, {"sensors", 200, build_sensors, 0},
+    {"chain", 240, build_chain, 0},   {"bridge", 240, build_bridge, 0}, {"ragdolls", 240, build_ragdolls, 0},
+    {"joints", 240, build_joints, 0}, {"flight", 240, build_flight, 0}, {"sensors", 200, build_sensors, 0},
 };
 const unsigned golden_more_scene_count = sizeof golden_more_scenes / sizeof *golden_more_scenes;

@@ -193,10 +193,34 @@ static void churn(talus_world *world, uint32_t step) {
     }
 }
 
+/* Columns under boxes of ten, a hundred and a thousand times their mass, and a slab on legs. */
+static void build_presses(talus_world *world) {
+    golden_floor(world);
+    talus_shape_def def = talus_shape_def_default();
+    float heavy = def.density;
+    for (int k = 0; k < 3; k++) {
+        heavy *= 10.0f;
+        for (int i = 0; i < 4; i++) {
+            float x = 2.5f * (float)k + golden_range(-0.02f, 0.02f);
+            talus_body b = golden_body(world, TALUS_DYNAMIC, golden_vec(x, 0.5f + (float)i, 0.0f));
+            def.geometry.half = golden_vec(0.5f, 0.5f, 0.5f);
+            def.density = i == 3 ? heavy : talus_shape_def_default().density;
+            golden_shape(world, b, &def);
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        float x = i & 1 ? 1.0f : -1.0f, z = i & 2 ? 4.0f : 6.0f;
+        golden_box(world, golden_body(world, TALUS_DYNAMIC, golden_vec(x, 0.3f, z)), golden_vec(0.2f, 0.3f, 0.2f));
+    }
+    def.geometry.half = golden_vec(1.5f, 0.2f, 1.5f);
+    def.density = heavy;
+    golden_shape(world, golden_body(world, TALUS_DYNAMIC, golden_vec(0.1f, 0.8f, 5.0f)), &def);
+}
+
 const golden_scene golden_scenes[] = {
     {"stack", 240, build_stack, 0},     {"pyramid", 200, build_pyramid, 0},
     {"pile", 240, build_pile, 0},       {"mixer", 240, build_mixer, turn_paddle},
     {"bounce", 240, build_bounce, 0},   {"sleep", 300, build_sleep, throw_ball},
-    {"churn", 300, build_churn, churn},
+    {"churn", 300, build_churn, churn}, {"presses", 240, build_presses, 0},
 };
 const unsigned golden_scene_count = sizeof golden_scenes / sizeof *golden_scenes;

@@ -6,17 +6,7 @@ tool=$1
 dir=${BUILD:-build}/bench
 rm -rf "$dir"
 mkdir -p "$dir"
-passed=0
-failed=0
-count() {
-    if [ "$2" -eq 0 ]; then
-        passed=$((passed + 1))
-        echo "  pass $1"
-    else
-        failed=$((failed + 1))
-        echo "  FAIL $1"
-    fi
-}
+. tools/ci/count.sh
 
 # measures WHAT OPTION...
 measures() {

@@ -14,17 +14,7 @@ if [ -z "$browser" ]; then
 fi
 rm -rf "$dir"
 mkdir -p "$dir"
-passed=0
-failed=0
-count() {
-    if [ "$2" -eq 0 ]; then
-        passed=$((passed + 1))
-        echo "  pass $1"
-    else
-        failed=$((failed + 1))
-        echo "  FAIL $1"
-    fi
-}
+. tools/ci/count.sh
 
 # dump PAGE OUT LOG SCHEME: the document as it stands once its scripts have run; SCHEME 0 is dark, 1 light
 dump() {
