@@ -123,7 +123,7 @@ void tl_stage_sleep(tl_header *h, float dt) {
     for (uint32_t k = h->awake_bodies; k-- > 0;) {
         uint32_t b = tl_awake_body(h)[k];
         if (tl_body_is_dynamic(h, b)) {
-            any |= count_quiet(h, b, dt);
+            any |= h->settings.enable_sleep && count_quiet(h, b, dt);
         } else if (!tl_bodies(h)[b].moves) {
             tl_body_clear_awake(h, b);
             tl_shapes_settle(h, b);
@@ -135,8 +135,8 @@ void tl_stage_sleep(tl_header *h, float dt) {
         tl_lists_of_awake(h);
         tl_lists_drop_sleeping(h);
     }
-    h->counters.sleep_searched = any && h->settings.enable_sleep;
-    if (h->counters.sleep_searched) {
+    h->counters.sleep_searched = (uint32_t)any;
+    if (any) {
         tl_lists_of_awake(h);
         find_islands(h);
         sleep_islands(h, h->settings.sleep_time);
