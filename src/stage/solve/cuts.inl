@@ -13,6 +13,7 @@ static inline link_lane cut_group(const tl_header *h, const tl_linkage *l, uint3
 typedef struct cuts_before {
     tl_joint_group g;
     tl_joint_row rows[TL_LINK_ROWS];
+    tl_f8 aligns; /* unused: it puts the others where lanes can be loaded from */
 } cuts_before;
 
 static inline void lane_up(const float *from, float *to) {
