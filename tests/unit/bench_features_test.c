@@ -1,14 +1,8 @@
 /* `talus bench features`: what is added is there and idle, and the table says so. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "bench_kit.h"
 
 #include "talus/bench_features.h"
 
-#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,9 +54,7 @@ static void table(void **state) {
     assert_int_equal(features_take(&t, names, 2, 1, 0), 0);
     assert_int_equal(t.count, 2 * feature_scene_count);
     features_json(&t, &text);
-    assert_false(text.failed);
-    cJSON *root = cJSON_Parse(text.data);
-    assert_non_null(root);
+    cJSON *root = bench_parsed(&text);
     const cJSON *row;
     uint32_t i = 0;
     cJSON_ArrayForEach(row, cJSON_GetObjectItem(root, "rows")) {

@@ -3,6 +3,7 @@
 # check-bench.sh TOOL
 set -u
 tool=$1
+subcommand=bench
 dir=${BUILD:-build}/bench
 rm -rf "$dir"
 mkdir -p "$dir"
@@ -19,18 +20,6 @@ draws() {
     measures "$1" --plot "$dir/$1.svg"
     python3 -c 'import sys, xml.etree.ElementTree as e; e.parse(sys.argv[1])' "$dir/$1.svg"
     count "$1 drawn" $?
-}
-
-# exits WITH NAME OPTION...: an exit status
-exits() {
-    want=$1
-    name=$2
-    shift 2
-    "$tool" bench "$@" >"$dir/out" 2>"$dir/err"
-    got=$?
-    [ $got -eq "$want" ] || cat "$dir/err"
-    [ $got -eq "$want" ]
-    count "$name: exit status $want" $?
 }
 
 draws queries

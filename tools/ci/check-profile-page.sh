@@ -3,6 +3,7 @@
 # format's rules; the rows of the CSV; the exit statuses. check-profile-page.sh TOOL
 set -u
 tool=$1
+subcommand=profile
 dir=${BUILD:-build}/profile-page
 browser=
 for name in chromium chromium-browser google-chrome; do
@@ -47,18 +48,6 @@ explained() {
         "$tool" profile "@$1" --json >"$dir/why.json" && python3 tools/ci/check_profile.py why "$dir/why.json" && return
     done
     return 1
-}
-
-# exits WITH NAME OPTION...: an exit status
-exits() {
-    want=$1
-    name=$2
-    shift 2
-    "$tool" profile "$@" >"$dir/out" 2>"$dir/err"
-    got=$?
-    [ $got -eq "$want" ] || cat "$dir/err"
-    [ $got -eq "$want" ]
-    count "$name: exit status $want" $?
 }
 
 page pile --steps 300 --budget 1

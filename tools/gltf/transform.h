@@ -47,6 +47,11 @@ static inline gltf_double9 gltf_mul99(const gltf_double9 *a, const gltf_double9 
     return m;
 }
 
+static inline gltf_double4 gltf_unit4(gltf_double4 q) {
+    double length = sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    gltf_double4 r = {q.x / length, q.y / length, q.z / length, q.w / length};
+    return r;
+}
 static inline gltf_double4 gltf_conjugate(gltf_double4 q) {
     gltf_double4 r = {-q.x, -q.y, -q.z, q.w};
     return r;
@@ -84,9 +89,7 @@ static inline gltf_double4 gltf_from_columns(const gltf_double9 *m) {
         gltf_double4 r = {m->x.z + m->z.x, m->y.z + m->z.y, 1 + m->z.z - m->x.x - m->y.y, m->x.y - m->y.x};
         q = r;
     }
-    double length = sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-    gltf_double4 r = {q.x / length, q.y / length, q.z / length, q.w / length};
-    return r;
+    return gltf_unit4(q);
 }
 
 /* To float: of numbers that were checked to fit. */
@@ -97,6 +100,13 @@ static inline talus_vec3 gltf_vec3(gltf_double3 v) {
 static inline talus_quat gltf_quat(gltf_double4 q) {
     talus_quat r = {(float)q.x, (float)q.y, (float)q.z, (float)q.w};
     return r;
+}
+
+/* Of float: a rotation is made unit anew. */
+static inline gltf_double3 gltf_of_vec3(talus_vec3 v) { return gltf_d3((double)v.x, (double)v.y, (double)v.z); }
+static inline gltf_double4 gltf_of_quat(talus_quat q) {
+    gltf_double4 r = {(double)q.x, (double)q.y, (double)q.z, (double)q.w};
+    return gltf_unit4(r);
 }
 
 #endif

@@ -17,25 +17,16 @@ typedef struct bench_part {
     talus_mass mass;
 } bench_part;
 
-static gltf_double3 double3(talus_vec3 v) { return gltf_d3((double)v.x, (double)v.y, (double)v.z); }
-
-static gltf_double4 double4(talus_quat q) {
-    gltf_double4 r = {(double)q.x, (double)q.y, (double)q.z, (double)q.w};
-    double length = sqrt(r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w);
-    r.x /= length, r.y /= length, r.z /= length, r.w /= length;
-    return r;
-}
-
 /* A pose in a body's frame (GLTF_NONE: the world's) as the world sees it. */
 static void place(const bench_judge *j, uint32_t body, const talus_pose *own, gltf_double3 *position,
                   gltf_double4 *rotation) {
-    *position = double3(own->position);
-    *rotation = double4(own->rotation);
+    *position = gltf_of_vec3(own->position);
+    *rotation = gltf_of_quat(own->rotation);
     if (body != GLTF_NONE) {
         talus_pose pose;
         talus_body_get_pose(&j->world->world, j->world->bodies[body], &pose);
-        gltf_double4 turn = double4(pose.rotation);
-        *position = gltf_add3(double3(pose.position), gltf_rotate(turn, *position));
+        gltf_double4 turn = gltf_of_quat(pose.rotation);
+        *position = gltf_add3(gltf_of_vec3(pose.position), gltf_rotate(turn, *position));
         *rotation = gltf_mul4(turn, *rotation);
     }
 }
@@ -55,11 +46,11 @@ static double reach(const talus_convex *c) {
         return hypot((double)g->half_height, most);
     case TALUS_HULL:
         for (uint32_t i = 0; i < talus_hull_vertex_count(c->hull); i++) {
-            reach = fmax(reach, gltf_length3(double3(talus_hull_vertex(c->hull, i))));
+            reach = fmax(reach, gltf_length3(gltf_of_vec3(talus_hull_vertex(c->hull, i))));
         }
         return reach;
     default:
-        return gltf_length3(double3(g->half));
+        return gltf_length3(gltf_of_vec3(g->half));
     }
 }
 
@@ -71,7 +62,7 @@ static void take_place(const bench_judge *j, uint32_t collider, bench_place *out
     out->collider = collider;
     gltf_double3 half = gltf_d3(j->reaches[collider], j->reaches[collider], j->reaches[collider]);
     if (convex->geometry.type == TALUS_BOX) {
-        gltf_double9 m = gltf_rotation_scale(out->rotation, double3(convex->geometry.half));
+        gltf_double9 m = gltf_rotation_scale(out->rotation, gltf_of_vec3(convex->geometry.half));
         half = gltf_d3(fabs(m.x.x) + fabs(m.y.x) + fabs(m.z.x), fabs(m.x.y) + fabs(m.y.y) + fabs(m.z.y),
                        fabs(m.x.z) + fabs(m.y.z) + fabs(m.z.z));
     }
@@ -190,13 +181,14 @@ static double energy(const bench_judge *j, uint32_t body) {
     talus_vec3 linear, angular;
     talus_body_get_pose(&j->world->world, j->world->bodies[body], &pose);
     talus_body_get_velocity(&j->world->world, j->world->bodies[body], &linear, &angular);
-    gltf_double4 turn = double4(pose.rotation);
-    gltf_double3 v = double3(linear), w = gltf_rotate(gltf_conjugate(turn), double3(angular));
-    gltf_double3 center = gltf_add3(double3(pose.position), gltf_rotate(turn, double3(p->mass.center)));
-    gltf_double9 inertia = {double3(p->mass.inertia.x), double3(p->mass.inertia.y), double3(p->mass.inertia.z)};
+    gltf_double4 turn = gltf_of_quat(pose.rotation);
+    gltf_double3 v = gltf_of_vec3(linear), w = gltf_rotate(gltf_conjugate(turn), gltf_of_vec3(angular));
+    gltf_double3 center = gltf_add3(gltf_of_vec3(pose.position), gltf_rotate(turn, gltf_of_vec3(p->mass.center)));
+    gltf_double9 inertia = {gltf_of_vec3(p->mass.inertia.x), gltf_of_vec3(p->mass.inertia.y),
+                            gltf_of_vec3(p->mass.inertia.z)};
     double mass = (double)p->mass.mass, factor = (double)j->scene->bodies[body].gravity_factor;
     return 0.5 * mass * gltf_dot3(v, v) + 0.5 * gltf_dot3(w, gltf_mul93(&inertia, w)) -
-           mass * factor * gltf_dot3(double3(j->scene->gravity), center);
+           mass * factor * gltf_dot3(gltf_of_vec3(j->scene->gravity), center);
 }
 
 /* Where a motor or a kinematic body adds energy nothing says how much may be gained. */
@@ -236,8 +228,8 @@ int bench_judge_open(bench_judge *j, const gltf_scene *scene, const gltf_world *
         talus_pose pose;
         talus_body_get_pose(&world->world, world->bodies[i], &pose);
         talus_body_get_mass(&world->world, world->bodies[i], &j->parts[i].mass);
-        j->parts[i].put = double3(pose.position);
-        j->weight += (double)j->parts[i].mass.mass * gltf_length3(double3(scene->gravity));
+        j->parts[i].put = gltf_of_vec3(pose.position);
+        j->weight += (double)j->parts[i].mass.mass * gltf_length3(gltf_of_vec3(scene->gravity));
         j->least_energy += energy(j, i);
     }
     return 0;
@@ -249,7 +241,7 @@ int bench_judge_step(bench_judge *j, int overlaps) {
     for (uint32_t i = 0; i < j->scene->body_count; i++) {
         talus_pose pose;
         talus_body_get_pose(&j->world->world, j->world->bodies[i], &pose);
-        j->drift = fmax(j->drift, gltf_length3(gltf_sub3(double3(pose.position), j->parts[i].put)));
+        j->drift = fmax(j->drift, gltf_length3(gltf_sub3(gltf_of_vec3(pose.position), j->parts[i].put)));
         sum += energy(j, i);
     }
     if (!(fabs(sum) < HUGE_VAL)) {

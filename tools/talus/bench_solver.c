@@ -28,31 +28,21 @@ const char *const solver_series_names[SOLVER_SERIES_COUNT] = {"substeps", "itera
 #define WITH(n, passes, hertz, anew)                                                                                   \
     { .substeps = n, .iterations = passes, .no_sleep = 1, .contact_hertz = hertz, .no_kept_manifolds = anew }
 
-static const solver_setting full_settings[] = {{"1 sub-step", SOLVER_SUBSTEPS, WITH(1, 1, 0, 0)},
-                                               {"2 sub-steps", SOLVER_SUBSTEPS, WITH(2, 1, 0, 0)},
-                                               {"4 sub-steps", SOLVER_SUBSTEPS, WITH(4, 1, 0, 0)},
-                                               {"8 sub-steps", SOLVER_SUBSTEPS, WITH(8, 1, 0, 0)},
-                                               {"16 sub-steps", SOLVER_SUBSTEPS, WITH(16, 1, 0, 0)},
-                                               {"32 sub-steps", SOLVER_SUBSTEPS, WITH(32, 1, 0, 0)},
-                                               {"4 of 2 iterations", SOLVER_ITERATIONS, WITH(4, 2, 0, 0)},
-                                               {"4 of 4 iterations", SOLVER_ITERATIONS, WITH(4, 4, 0, 0)},
-                                               {"4 of 8 iterations", SOLVER_ITERATIONS, WITH(4, 8, 0, 0)},
-                                               {"1 of 4 iterations", SOLVER_SINGLE, WITH(1, 4, 0, 0)},
-                                               {"1 of 8 iterations", SOLVER_SINGLE, WITH(1, 8, 0, 0)},
-                                               {"1 of 16 iterations", SOLVER_SINGLE, WITH(1, 16, 0, 0)},
-                                               {"4, contacts of 30 Hz", SOLVER_OTHERS, WITH(4, 1, 30, 0)},
-                                               {"8, contacts of 120 Hz", SOLVER_OTHERS, WITH(8, 1, 120, 0)},
-                                               {"4, all manifolds anew", SOLVER_OTHERS, WITH(4, 1, 0, 1)}};
-static const solver_setting quick_settings[] = {{"1 sub-step", SOLVER_SUBSTEPS, WITH(1, 1, 0, 0)},
-                                                {"4 sub-steps", SOLVER_SUBSTEPS, WITH(4, 1, 0, 0)},
-                                                {"4 of 4 iterations", SOLVER_ITERATIONS, WITH(4, 4, 0, 0)},
-                                                {"4, all manifolds anew", SOLVER_OTHERS, WITH(4, 1, 0, 1)}};
-
-typedef struct plan {
-    const solver_setting *settings;
-    uint32_t setting_count, runs;
-} plan;
-
+static const solver_setting settings[] = {{"1 sub-step", SOLVER_SUBSTEPS, 1, WITH(1, 1, 0, 0)},
+                                          {"2 sub-steps", SOLVER_SUBSTEPS, 0, WITH(2, 1, 0, 0)},
+                                          {"4 sub-steps", SOLVER_SUBSTEPS, 1, WITH(4, 1, 0, 0)},
+                                          {"8 sub-steps", SOLVER_SUBSTEPS, 0, WITH(8, 1, 0, 0)},
+                                          {"16 sub-steps", SOLVER_SUBSTEPS, 0, WITH(16, 1, 0, 0)},
+                                          {"32 sub-steps", SOLVER_SUBSTEPS, 0, WITH(32, 1, 0, 0)},
+                                          {"4 of 2 iterations", SOLVER_ITERATIONS, 0, WITH(4, 2, 0, 0)},
+                                          {"4 of 4 iterations", SOLVER_ITERATIONS, 1, WITH(4, 4, 0, 0)},
+                                          {"4 of 8 iterations", SOLVER_ITERATIONS, 0, WITH(4, 8, 0, 0)},
+                                          {"1 of 4 iterations", SOLVER_SINGLE, 0, WITH(1, 4, 0, 0)},
+                                          {"1 of 8 iterations", SOLVER_SINGLE, 0, WITH(1, 8, 0, 0)},
+                                          {"1 of 16 iterations", SOLVER_SINGLE, 0, WITH(1, 16, 0, 0)},
+                                          {"4, contacts of 30 Hz", SOLVER_OTHERS, 0, WITH(4, 1, 30, 0)},
+                                          {"8, contacts of 120 Hz", SOLVER_OTHERS, 0, WITH(8, 1, 120, 0)},
+                                          {"4, all manifolds anew", SOLVER_OTHERS, 1, WITH(4, 1, 0, 1)}};
 /* --- one run --- */
 
 static int trouble(const solver_case *c, const solver_setting *setting, const char *what) {
@@ -136,14 +126,12 @@ static void mark_front(solver_case *c) {
     }
 }
 
-static int take_case(solver_case *c, const gltf_scene *scene, const plan *p, int watched) {
-    double *least = malloc((size_t)p->setting_count * c->steps * sizeof *least), means[SOLVER_MOST_SETTINGS][FULL_RUNS];
-    int status = least != NULL ? 0 : trouble(c, p->settings, "there is no memory for the times");
-    c->rows = p->setting_count;
+static int take_case(solver_case *c, const gltf_scene *scene, uint32_t runs, int watched) {
+    double *least = malloc((size_t)c->rows * c->steps * sizeof *least), means[SOLVER_MOST_SETTINGS][FULL_RUNS];
+    int status = least != NULL ? 0 : trouble(c, c->row->setting, "there is no memory for the times");
     for (uint32_t i = 0; i < c->rows && status == 0; i++) {
-        c->row[i].setting = &p->settings[i];
         if (watched) {
-            fprintf(stderr, "\r%s: errors, %s ...%20s", c->scene->name, p->settings[i].name, "");
+            fprintf(stderr, "\r%s: errors, %s ...%20s", c->scene->name, c->row[i].setting->name, "");
         }
         status = judge(c, scene, &c->row[i]);
     }
@@ -151,10 +139,9 @@ static int take_case(solver_case *c, const gltf_scene *scene, const plan *p, int
         least[i] = HUGE_VAL;
     }
     /* the settings take turns, so that a mood of the machine meets all of them */
-    for (uint32_t run = 0; run < p->runs; run++) {
+    for (uint32_t run = 0; run < runs; run++) {
         if (watched) {
-            fprintf(stderr, "\r%s: times, run %u of %u ...%40s", c->scene->name, (unsigned)run + 1, (unsigned)p->runs,
-                    "");
+            fprintf(stderr, "\r%s: times, run %u of %u ...%40s", c->scene->name, (unsigned)run + 1, (unsigned)runs, "");
         }
         for (uint32_t i = 0; i < c->rows && status == 0; i++) {
             status = time_run(c, scene, &c->row[i], least + (size_t)i * c->steps, &means[i][run]);
@@ -164,16 +151,16 @@ static int take_case(solver_case *c, const gltf_scene *scene, const plan *p, int
         solver_row *row = &c->row[i];
         figures ms = figures_of(least + (size_t)i * c->steps, c->steps);
         row->ms = ms.mean;
-        qsort(means[i], p->runs, sizeof *means[i], figures_compare);
-        row->median = means[i][p->runs / 2];
-        row->spread = means[i][p->runs * 3 / 4] - means[i][p->runs / 4];
+        qsort(means[i], runs, sizeof *means[i], figures_compare);
+        row->median = means[i][runs / 2];
+        row->spread = means[i][runs * 3 / 4] - means[i][runs / 4];
     }
     free(least);
     mark_front(c);
     return status;
 }
 
-static int take_scene(solver_table *table, const solver_scene *which, const plan *p, int quick, int watched) {
+static int take_scene(solver_table *table, const solver_scene *which, int quick, int watched) {
     char path[40];
     gltf_scene scene;
     solver_case *c = &table->cases[table->count];
@@ -186,7 +173,12 @@ static int take_scene(solver_table *table, const solver_scene *which, const plan
         c->joints = scene.joint_count;
         c->dt = scene.dt;
         c->steps = quick && scene.steps > QUICK_STEPS ? QUICK_STEPS : scene.steps;
-        status = take_case(c, &scene, p, watched);
+        for (uint32_t i = 0; i < sizeof settings / sizeof *settings; i++) {
+            if (settings[i].quick || !quick) {
+                c->row[c->rows++].setting = &settings[i];
+            }
+        }
+        status = take_case(c, &scene, table->runs, watched);
         table->count++;
     }
     gltf_scene_free(&scene);
@@ -194,15 +186,12 @@ static int take_scene(solver_table *table, const solver_scene *which, const plan
 }
 
 int solver_take(solver_table *table, const char *const *names, uint32_t name_count, int quick, int watched) {
-    const plan full = {full_settings, sizeof full_settings / sizeof *full_settings, FULL_RUNS},
-               small = {quick_settings, sizeof quick_settings / sizeof *quick_settings, QUICK_RUNS};
-    const plan *p = quick ? &small : &full;
     int status = 0;
     table->count = 0;
-    table->runs = p->runs;
+    table->runs = quick ? QUICK_RUNS : FULL_RUNS;
     for (uint32_t i = 0; i < solver_scene_count && status == 0; i++) {
         if (bench_is_chosen(solver_scenes[i].name, names, name_count)) {
-            status = take_scene(table, &solver_scenes[i], p, quick, watched);
+            status = take_scene(table, &solver_scenes[i], quick, watched);
         }
     }
     if (watched) {

@@ -30,6 +30,7 @@ typedef enum solver_series {
 typedef struct solver_setting {
     const char *name;
     solver_series series;
+    int quick; /* it is in the quick table too */
     gltf_build_options build;
 } solver_setting;
 

@@ -102,17 +102,9 @@ static talus_status at_point(const bench_world *b, const question *q, answer *a)
 
 /* --- the same of one box --- */
 
-static gltf_double3 double3(talus_vec3 v) { return gltf_d3((double)v.x, (double)v.y, (double)v.z); }
-
-static gltf_double4 double4(talus_quat q) {
-    gltf_double4 r = {(double)q.x, (double)q.y, (double)q.z, (double)q.w};
-    double length = sqrt(r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w);
-    r.x /= length, r.y /= length, r.z /= length, r.w /= length;
-    return r;
-}
-
 static gltf_double3 seen_from(const thing *t, talus_vec3 point) {
-    return gltf_rotate(gltf_conjugate(double4(t->pose.rotation)), gltf_sub3(double3(point), double3(t->pose.position)));
+    return gltf_rotate(gltf_conjugate(gltf_of_quat(t->pose.rotation)),
+                       gltf_sub3(gltf_of_vec3(point), gltf_of_vec3(t->pose.position)));
 }
 
 /* Between which parts of the way an interval from -half to half is met. */
@@ -127,8 +119,8 @@ static void cut(double from, double way, double half, double *enter, double *lea
 }
 
 static int look_along(const bench_world *b, const question *q, const thing *t, double *at) {
-    gltf_double3 from = seen_from(t, q->ray.origin), half = double3(t->convex.geometry.half);
-    gltf_double3 way = gltf_rotate(gltf_conjugate(double4(t->pose.rotation)), double3(q->ray.way));
+    gltf_double3 from = seen_from(t, q->ray.origin), half = gltf_of_vec3(t->convex.geometry.half);
+    gltf_double3 way = gltf_rotate(gltf_conjugate(gltf_of_quat(t->pose.rotation)), gltf_of_vec3(q->ray.way));
     double leave = 1;
     (void)b;
     *at = 0;
@@ -166,7 +158,7 @@ static int look_within(const bench_world *b, const question *q, const thing *t, 
 }
 
 static int look_from_point(const bench_world *b, const question *q, const thing *t, double *at) {
-    gltf_double3 p = seen_from(t, q->pose.position), half = double3(t->convex.geometry.half);
+    gltf_double3 p = seen_from(t, q->pose.position), half = gltf_of_vec3(t->convex.geometry.half);
     (void)b;
     *at = gltf_length3(gltf_d3(fmax(fabs(p.x) - half.x, 0), fmax(fabs(p.y) - half.y, 0), fmax(fabs(p.z) - half.z, 0)));
     return *at <= (double)REACH;
@@ -325,7 +317,7 @@ static int judge(const bench_world *b, const method *m, const question *q, int *
     *off = 0;
     *wrong = m->first ? (count > 0) != (a.hits.count > 0) : missed > 0 || count != a.hits.count;
     if (m->ask != ray_any && count > 0 && a.hits.count > 0) {
-        double length = gltf_length3(double3(q->ray.way));
+        double length = gltf_length3(gltf_of_vec3(q->ray.way));
         *off = fabs(a.hit[0].at - (m->first || m->by_way ? least : 0)) * (m->by_way ? length : 1);
     }
     return 0;

@@ -10,23 +10,30 @@
 
 #define UNLIKE 12.0f /* masses: from here on a body is heavy on another */
 #define LOADED 12.0f /* weights of a body: from here on a contact is a load to it */
-#define MOST_UNLIKE                                                                                                    \
-    4096.0f /* masses in a press: beyond, what a float rounds is as much as what the light ones need                   \
-             */
+/* Masses in one press: beyond, what a float rounds is as much as what the light ones need. */
+#define MOST_UNLIKE 4096.0f
+
+/* The least and the most of inverse masses, without those that nothing moves. */
+typedef struct spread {
+    float least, most;
+} spread;
+
+static void widen(spread *s, float inverse) {
+    if (inverse > 0.0f) {
+        s->least = tl_min(s->least, inverse), s->most = tl_max(s->most, inverse);
+    }
+}
 
 /* Whether some awake bodies' masses are so unlike that there may be a press. */
 static int any_unlike(const tl_header *h) {
-    float least = 3.0e38f, most = 0.0f;
+    spread s = {3.0e38f, 0.0f};
     for (uint32_t row = 1; row <= h->awake_bodies; row++) {
-        float inverse = tl_row_velocity(h)[row].f[6];
-        if (inverse > 0.0f) {
-            least = tl_min(least, inverse), most = tl_max(most, inverse);
-        }
+        widen(&s, tl_row_velocity(h)[row].f[6]);
     }
-    return most > UNLIKE * least;
+    return s.most > UNLIKE * s.least;
 }
 
-/* What of a contact's impulse, N s, makes it a load: per inverse mass. */
+/* N s: what a contact bore in the last sub-step. */
 static float load_of(const tl_header *h, uint32_t contact) {
     float sum = 0.0f;
     for (uint32_t k = 0; k < tl_contacts(h)[contact].count; k++) {
@@ -153,13 +160,11 @@ static void reverse(tl_pressed *p, uint32_t count) {
 
 /* Whether the masses of the bodies of `count` contacts differ by more than a float can tell apart. */
 static int is_too_unlike(const tl_header *h, const tl_pressed *p, uint32_t count) {
-    float least = 3.0e38f, most = 0.0f;
+    spread s = {3.0e38f, 0.0f};
     for (uint32_t k = 0; k < 2u * count; k++) {
-        float inverse = tl_row_velocity(h)[p[k / 2u].row[k % 2u]].f[6];
-        least = inverse > 0.0f ? tl_min(least, inverse) : least;
-        most = tl_max(most, inverse);
+        widen(&s, tl_row_velocity(h)[p[k / 2u].row[k % 2u]].f[6]);
     }
-    return most > MOST_UNLIKE * least;
+    return s.most > MOST_UNLIKE * s.least;
 }
 
 /* Makes presses of what was collected; contacts whose factor has no room stay out of any. */
