@@ -155,6 +155,8 @@ typedef struct talus_counters {
     uint32_t lanes_used;          /* lanes that held a constraint */
     uint32_t groups_pushed;       /* that hold a point deep enough to be pushed out */
     uint32_t groups_bouncing;     /* that hold a contact with restitution */
+    uint32_t impact_sweeps;       /* over them, in all sub-steps, for impacts that run from body to body */
+    uint32_t groups_struck;       /* that met anew in these sweeps, counted in each */
     uint32_t restitution_skipped; /* 1: nothing bounced, the stage did not run */
     uint32_t joints_skipped;
     uint32_t rolling_skipped;

@@ -39,7 +39,7 @@ void tl_stage_stiffness(tl_step *step);
 #define TL_MOST_STIFF 1.0f
 #define TL_STIFF_PULL (0.25f * TL_MOST_STIFF) /* of one joint: from here on it is looked what all of them make */
 
-/* Keeps velocities off the axes that a body is locked to. */
+/* Keeps velocities and displacements off the axes that a body is locked to. */
 void tl_stage_locks(tl_step *step);
 
 /* commit: poses and velocities back to the bodies. */

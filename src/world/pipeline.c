@@ -36,6 +36,7 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     set_softness(step);
     tl_events_begin(h);
     h->counters.islands_slept = h->counters.islands_woken = h->counters.bodies_slept = h->counters.bodies_woken = 0;
+    h->counters.impact_sweeps = h->counters.groups_struck = 0;
 }
 
 /* Sweeps over the contacts until none meets fast enough to bounce. */
@@ -45,8 +46,10 @@ static void strike(tl_step *step, const tl_kernels *k) {
         k->strike_contacts(step, 0, h->groups);
         struck = 0;
         for (uint32_t i = 0; i < h->groups; i++) {
-            struck |= tl_group_pool(h)[i].struck;
+            struck += tl_group_pool(h)[i].struck;
         }
+        h->counters.impact_sweeps++;
+        h->counters.groups_struck += struck;
     }
 }
 
@@ -74,6 +77,14 @@ static void run_linked_velocities(tl_step *step, const tl_kernels *k) {
 /* How often in a sub-step errors of linked joints are taken back that are too large for once. */
 #define MOST_PUSHES 8u
 
+/* Displacements to the places of the bodies that may go there. */
+static void push_bodies(tl_step *step, const tl_kernels *k) {
+    if (step->any_locks) {
+        tl_stage_locks(step);
+    }
+    k->push(step, 0, step->rows);
+}
+
 /* Displacements that take errors back. */
 static void push_back(tl_step *step, const tl_kernels *k) {
     tl_header *h = step->h;
@@ -83,16 +94,13 @@ static void push_back(tl_step *step, const tl_kernels *k) {
         k->push_contacts(step, 0, contacts);
         run_linkages(step, k, k->read_errors, k->apply_pushes);
         tl_stage_press_errors(step);
-        if (step->any_locks) {
-            tl_stage_locks(step);
-        }
-        k->push(step, 0, step->rows);
+        push_bodies(step, k);
     }
     step->again = 1;
     for (uint32_t i = 1; i < MOST_PUSHES && tl_stage_far_linkages(h); i++) {
         k->turn_joints(step, 0, joints);
         run_linkages(step, k, k->read_errors, k->apply_pushes);
-        k->push(step, 0, step->rows);
+        push_bodies(step, k);
     }
     step->again = 0;
 }

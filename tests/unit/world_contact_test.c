@@ -135,8 +135,15 @@ static double bounce(float floor_restitution, talus_combine floor_rule, float ba
     def.material.restitution_combine = ball_rule;
     kit_shape(&world, body, &def);
     OK(talus_body_set_velocity(&world, body, kit_vec(0.0f, -speed, 0.0f), kit_vec(0.0f, 0.0f, 0.0f)));
-    kit_steps(&world, 90);
+    uint32_t struck = 0;
+    for (int i = 0; i < 90; i++) {
+        kit_steps(&world, 1);
+        talus_counters c = kit_counters(&world);
+        assert_true(c.impact_sweeps >= c.groups_struck && (c.impact_sweeps > 0) == (c.groups_bouncing > 0));
+        struck += c.groups_struck;
+    }
     double up = (double)kit_velocity(&world, body).y;
+    assert_int_equal(struck, up > 0.1 ? 1 : 0);
     kit_end(&world);
     return up / (double)speed;
 }

@@ -37,6 +37,8 @@ enum {
     LANES_USED,
     GROUPS_PUSHED,
     GROUPS_BOUNCING,
+    IMPACT_SWEEPS,
+    GROUPS_STRUCK,
     COUNTS
 };
 
@@ -70,6 +72,8 @@ const timeline_count timeline_counts[COUNTS] = {
     COUNTER(lanes_used, "lanes used", "lane used"),
     COUNTER(groups_pushed, "groups with deep overlap", "group with deep overlap"),
     COUNTER(groups_bouncing, "groups that bounce", "group that bounces"),
+    COUNTER(impact_sweeps, "sweeps for impacts", "sweep for impacts"),
+    COUNTER(groups_struck, "groups struck", "group struck"),
 };
 const uint32_t timeline_count_count = COUNTS;
 
@@ -85,7 +89,7 @@ static const unsigned char CAUSES[TALUS_STAGE_COUNT][5] = {
     {CONTACTS_PRESSED, CONTACTS_TOUCHING, CONTACT_POINTS, JOINTS_SOLVED, COUNTS}, /* solve */
     {AWAKE_BODIES, COUNTS},                                                       /* position */
     {CONTACTS_PRESSED, GROUPS_PUSHED, CONTACTS_TOUCHING, JOINTS_SOLVED, COUNTS},  /* relax */
-    {GROUPS_BOUNCING, COUNTS},                                                    /* restitution */
+    {GROUPS_STRUCK, IMPACT_SWEEPS, GROUPS_BOUNCING, COUNTS},                      /* restitution */
     {COUNTS},                                                                     /* ccd */
     {AWAKE_BODIES, COUNTS},                                                       /* commit */
     {BODIES_SLEPT, ISLANDS_SLEPT, SLEEP_SEARCHED, AWAKE_BODIES, COUNTS},          /* sleep */
