@@ -65,7 +65,9 @@ TOOLS_OBJ := $(TOOLS_SRC:%.c=$(BUILD)/%.o) $(BUILD)/tools/talus/profile_page.o
 
 # tests/*/NAME_test.c is a program each; what else lies there, but for fuzzers and *_main.c, is linked to all of them.
 TEST_SRC := $(sort $(wildcard tests/*/*_test.c))
-TEST_BIN := $(TEST_SRC:%.c=$(BUILD)/%$(EXE))
+# The long ones first, so that no processor waits for the last.
+LONG_TESTS = tests/unit/random_worlds_test.c tests/unit/record_test.c tests/unit/quickhull_test.c
+TEST_BIN := $(patsubst %.c,$(BUILD)/%$(EXE),$(LONG_TESTS) $(filter-out $(LONG_TESTS),$(TEST_SRC)))
 HELP_SRC := $(sort $(filter-out %_test.c %_fuzz.c %_main.c tests/golden/%,$(wildcard tests/*/*.c)))
 HELP_CXX := $(sort $(wildcard tests/*/*.cpp))
 HELP_LIB = $(BUILD)/libtesthelp.a
@@ -207,7 +209,7 @@ fuzz:
 	@command -v $(FUZZ_CC) >/dev/null || sh tools/ci/install-deps.sh full
 	@+$(MAKE) --no-print-directory CC=$(FUZZ_CC) BUILD=$(FUZZ_BUILD) OPT="-O2 -g" WERROR= \
 	    CFLAGS="-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all $(CFLAGS)" fuzz-programs
-	@for f in $(FUZZ_NAMES); do FUZZ_TIME=$(FUZZ_TIME) sh tools/ci/run-fuzzer.sh $(FUZZ_BUILD)/$$f || exit 1; done
+	@printf '%s\n' $(FUZZ_NAMES:%=$(FUZZ_BUILD)/%) | FUZZ_TIME=$(FUZZ_TIME) xargs -P "$$(nproc)" -n 1 sh tools/ci/run-fuzzer.sh
 
 .PHONY: fuzz-programs
 fuzz-programs: $(FUZZ_NAMES:%=$(BUILD)/%)

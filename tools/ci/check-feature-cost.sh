@@ -24,6 +24,7 @@ counts() {
     }
 }
 
-counts pyramid 60
+counts pyramid 60 &
 counts pile 120
+wait $!
 python3 tools/ci/feature_cost.py "$dir/pyramid.out" "$dir/pile.out"

@@ -1,46 +1,64 @@
 #!/bin/sh
 # Builds the golden program by every compiler and level at hand, runs it over every instruction set it has, and compares
 # with tests/golden/hashes.txt. BUILD=dir FAST=1 golden.sh; FAST: only this machine's own kind of processor.
-# MATRIX: lines of "name|compiler|flags|runner", in place of the built-in ones.
+# MATRIX: lines of "name|compiler|flags|runner", in place of the built-in ones. JOBS of them are made at once, each by
+# golden.sh LINE, which leaves in $BUILD/golden-NAME the hashes as ISA.txt, the names of the sets in `isas`, or in
+# `trouble` why there are none.
 set -u
 BUILD=${BUILD:-build}
 JOBS=${JOBS:-$(nproc 2>/dev/null || echo 2)}
+
+# produce NAME COMPILER FLAGS RUNNER
+produce() {
+    dir=$BUILD/golden-$1
+    mkdir -p "$dir"
+    rm -f "$dir"/*.txt "$dir/isas" "$dir/trouble"
+    if ! command -v "${2%% *}" >/dev/null 2>&1 || { [ -n "$4" ] && ! command -v "${4%% *}" >/dev/null 2>&1; }; then
+        echo "skipped: no $2${4:+ or ${4%% *}}" >"$dir/trouble"
+        return
+    fi
+    case $1 in wasm*) exe=.wasm ;; *) exe= ;; esac
+    case $4 in '') link= ;; node*) link= ;; *) link=-static ;; esac
+    if ! make --no-print-directory CC="$2" OPT="$3" CFLAGS= LDFLAGS="$link" EXE="$exe" BUILD="$dir" "$dir/golden$exe" \
+        >"$dir/build.log" 2>&1; then
+        echo "DOES NOT BUILD" | cat - "$dir/build.log" >"$dir/trouble"
+        return
+    fi
+    $4 "$dir/golden$exe" --isas >"$dir/isas"
+    [ -s "$dir/isas" ] || echo "DOES NOT RUN" >"$dir/trouble"
+    for isa in $(cat "$dir/isas"); do
+        $4 "$dir/golden$exe" "$isa" >"$dir/$isa.txt" 2>"$dir/$isa.err" || rm -f "$dir/$isa.txt"
+    done
+}
+if [ $# -gt 0 ]; then
+    IFS='|' read -r name compiler flags runner <<END
+$1
+END
+    produce "$name" "$compiler" "$flags" "$runner" </dev/null
+    exit
+fi
+
 want=tests/golden/hashes.txt
 passed=0
 failed=0
 skipped=0
-
 compared=0
 
 # The scenes in which a list of hashes differs from what is wanted.
 differing() { diff "$want" "$1" | sed -n 's/^> \([^ ]*\) .*/\1/p' | tr '\n' ' '; }
 row() { printf '  %-18s %-8s %s\n' "$1" "$2" "$3"; }
 
-# one NAME COMPILER FLAGS RUNNER
-one() {
-    if ! command -v "${2%% *}" >/dev/null 2>&1 || { [ -n "$4" ] && ! command -v "${4%% *}" >/dev/null 2>&1; }; then
-        row "$1" - "skipped: no $2${4:+ or ${4%% *}}"
-        skipped=$((skipped + 1))
-        return
-    fi
+# judge NAME
+judge() {
     dir=$BUILD/golden-$1
-    case $1 in wasm*) exe=.wasm ;; *) exe= ;; esac
-    case $4 in '') link= ;; node*) link= ;; *) link=-static ;; esac
-    mkdir -p "$dir"
-    if ! make --no-print-directory -j"$JOBS" CC="$2" OPT="$3" CFLAGS= LDFLAGS="$link" EXE="$exe" BUILD="$dir" "$dir/golden$exe" \
-        >"$dir/build.log" 2>&1; then
-        row "$1" - "DOES NOT BUILD"
-        tail -20 "$dir/build.log"
-        failed=$((failed + 1))
+    if [ -e "$dir/trouble" ]; then
+        row "$1" - "$(head -1 "$dir/trouble")"
+        tail -n +2 "$dir/trouble" | tail -20
+        case $(head -1 "$dir/trouble") in skipped*) skipped=$((skipped + 1)) ;; *) failed=$((failed + 1)) ;; esac
         return
     fi
-    isas=$($4 "$dir/golden$exe" --isas)
-    if [ -z "$isas" ]; then
-        row "$1" - "DOES NOT RUN"
-        failed=$((failed + 1))
-    fi
-    for isa in $isas; do
-        if ! $4 "$dir/golden$exe" "$isa" >"$dir/$isa.txt" 2>"$dir/$isa.err"; then
+    for isa in $(cat "$dir/isas"); do
+        if ! [ -e "$dir/$isa.txt" ]; then
             row "$1" "$isa" "DID NOT FINISH: $(tail -1 "$dir/$isa.err")"
             failed=$((failed + 1))
             continue
@@ -96,11 +114,10 @@ others() {
 }
 
 lines=${MATRIX:-$(native; [ -n "${FAST:-}" ] || others)}
-while IFS='|' read -r name compiler flags runner; do
-    one "$name" "$compiler" "$flags" "$runner" </dev/null
-done <<END
-$lines
-END
+printf '%s\n' "$lines" | BUILD=$BUILD xargs -d '\n' -P "$JOBS" -n 1 sh "$0"
+for name in $(printf '%s\n' "$lines" | cut -d'|' -f1); do
+    judge "$name"
+done
 echo
 sed 's/^\([^ ]*\) \([^ ]*\) \(.*\)$/  \1 (\2 steps) \3/' "$want" | awk '{ printf "  %-24s %-14s %s\n", $1, $2 " " $3, $4 }'
 echo "golden: $passed same, $failed not, $skipped skipped"

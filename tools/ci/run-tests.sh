@@ -33,16 +33,18 @@ fi
 printf '%s\n' "$@" | xargs -P "$JOBS" -I{} sh -c "$one" sh {} "$logs"
 
 # The hashes by every instruction set that is here.
-for isa in $(${RUN:-} "$golden" --isas); do
-    if ${RUN:-} "$golden" "$isa" >"$logs/golden-$isa.log" 2>&1 && cmp -s "$logs/golden-$isa.log" tests/golden/hashes.txt; then
-        echo "1 0" >"$logs/golden-$isa.count"
-        echo "  pass golden hashes by $isa"
-    else
-        echo "0 1" >"$logs/golden-$isa.count"
-        echo "  FAIL golden hashes by $isa"
-        diff tests/golden/hashes.txt "$logs/golden-$isa.log"
-    fi
-done
+by='
+log=$3/golden-$2
+if ${RUN:-} "$1" "$2" >"$log.log" 2>&1 && cmp -s "$log.log" tests/golden/hashes.txt; then
+    echo "1 0" >"$log.count"
+    echo "  pass golden hashes by $2"
+else
+    echo "0 1" >"$log.count"
+    echo "  FAIL golden hashes by $2"
+    diff tests/golden/hashes.txt "$log.log"
+fi
+'
+${RUN:-} "$golden" --isas | tr ' ' '\n' | xargs -P "$JOBS" -I{} sh -c "$by" sh "$golden" {} "$logs"
 
 passed=0
 failed=0
