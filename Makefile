@@ -190,10 +190,17 @@ $(GOLDEN): $(GOLDEN_SRC:%.c=$(BUILD)/%.o) $(OBJ)
 test: $(if $(TESTS),$(foreach t,$(TESTS),$(filter %/$(t)_test$(EXE),$(TEST_BIN))),$(TEST_BIN)) $(GOLDEN) lib tool
 	@RUN="$(RUN)" BUILD="$(BUILD)" sh tools/ci/run-tests.sh $(GOLDEN) $(filter $(BUILD)/tests/%,$^)
 
-# gcc's sanitizers make it warn of things that are not so: warnings stay warnings here.
-sanitize:
-	@+$(MAKE) --no-print-directory BUILD=$(BUILD)/san OPT="-O1 -g -fno-omit-frame-pointer" WERROR= \
-	    CFLAGS="-fsanitize=address,undefined -fno-sanitize-recover=all $(CFLAGS)" test
+# Tests and fuzzers under the sanitizers are of one build.
+SAN_CC ?= clang
+SAN_CXX ?= clang++
+SAN_BUILD = $(BUILD)/san
+SAN_MAKE = $(MAKE) --no-print-directory CC=$(SAN_CC) CXX=$(SAN_CXX) BUILD=$(SAN_BUILD) OPT="-O2 -g" WERROR= \
+    CFLAGS="-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all $(CFLAGS)"
+.PHONY: need-san
+need-san:
+	@command -v $(SAN_CC) >/dev/null || sh tools/ci/install-deps.sh full
+sanitize: need-san
+	@+$(SAN_MAKE) test
 
 golden:
 	@$(if $(FAST),,sh tools/ci/install-deps.sh matrix)
@@ -203,13 +210,9 @@ golden-update: $(GOLDEN)
 	$(RUN) $(GOLDEN) > $(BUILD)/hashes.txt
 	@mv $(BUILD)/hashes.txt tests/golden/hashes.txt
 
-FUZZ_BUILD = $(BUILD)/fuzz
-FUZZ_CC ?= clang
-fuzz:
-	@command -v $(FUZZ_CC) >/dev/null || sh tools/ci/install-deps.sh full
-	@+$(MAKE) --no-print-directory CC=$(FUZZ_CC) BUILD=$(FUZZ_BUILD) OPT="-O2 -g" WERROR= \
-	    CFLAGS="-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all $(CFLAGS)" fuzz-programs
-	@printf '%s\n' $(FUZZ_NAMES:%=$(FUZZ_BUILD)/%) | FUZZ_TIME=$(FUZZ_TIME) xargs -P "$$(nproc)" -n 1 sh tools/ci/run-fuzzer.sh
+fuzz: need-san
+	@+$(SAN_MAKE) fuzz-programs
+	@printf '%s\n' $(FUZZ_NAMES:%=$(SAN_BUILD)/%) | FUZZ_TIME=$(FUZZ_TIME) xargs -P "$$(nproc)" -n 1 sh tools/ci/run-fuzzer.sh
 
 .PHONY: fuzz-programs
 fuzz-programs: $(FUZZ_NAMES:%=$(BUILD)/%)
