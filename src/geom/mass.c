@@ -53,7 +53,8 @@ talus_status tl_geometry_check(const talus_geometry *g, const void *region, size
 }
 
 const talus_hull *tl_geometry_hull(const talus_geometry *g, const void *region) {
-    return (const talus_hull *)(const void *)((const unsigned char *)region + g->hull);
+    const unsigned char *bytes = region;
+    return region == NULL ? NULL : (const talus_hull *)(const void *)(bytes + g->hull);
 }
 
 /* A body of revolution about y: volume, first moment of y, and the second moments about the axis and about a line
