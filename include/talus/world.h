@@ -179,14 +179,6 @@ uint64_t talus_world_hash(const talus_world *world);
 /* Whether every index, link, count and number of the block is sound: TALUS_OK or TALUS_BAD_BLOB. O(size). */
 talus_status talus_world_validate(const talus_world *world);
 
-/* Where two blocks of the same capacities first differ: the column's name, the row and the byte in it. Returns 1 if
- * they differ, 0 if they are the same, -1 if they cannot be compared. */
-typedef struct talus_difference {
-    const char *column;
-    uint32_t row, byte;
-} talus_difference;
-int talus_world_first_difference(const talus_world *a, const talus_world *b, talus_difference *out);
-
 /* The body that static geometry without a body of its own may be put on, made at init at the origin. */
 talus_body talus_world_ground(const talus_world *world);
 

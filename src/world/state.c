@@ -335,7 +335,7 @@ int talus_world_part(const talus_world *a, const talus_world *b, int commands, t
         return -1;
     }
     const tl_header *ha = tl_header_of(a), *hb = tl_header_of(b);
-    if (memcmp(ha->capacity, hb->capacity, sizeof ha->capacity) != 0) {
+    if (memcmp(ha->capacity, hb->capacity, TL_COUNT_OF_STATE * sizeof *ha->capacity) != 0) {
         return -1;
     }
     uint64_t differ = 0;

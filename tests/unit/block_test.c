@@ -216,13 +216,13 @@ static void a_copy_goes_on_bit_for_bit(void **state) {
         again.geometry = hull, again.geometry_bytes = bytes;
         OK(talus_world_set_isa(&again, TALUS_ISA_SCALAR));
         for (int i = 0; i < 60; i++) {
-            talus_difference where;
+            talus_parting where;
             kit_steps(&world, 1);
             kit_steps(&copy, 1);
             kit_steps(&again, 1);
-            assert_int_equal(talus_world_first_difference(&world, &copy, &where), 0);
+            assert_int_equal(talus_world_part(&world, &copy, 0, &where), 0);
             assert_true(talus_world_hash(&world) == talus_world_hash(&copy));
-            assert_int_equal(talus_world_first_difference(&world, &again, &where), 0);
+            assert_int_equal(talus_world_part(&world, &again, 0, &where), 0);
             assert_true(talus_world_hash(&world) == talus_world_hash(&again));
         }
         kit_free(memory);
@@ -267,22 +267,22 @@ static void the_hash_sees_a_bit(void **state) {
     (void)state;
     talus_world_def def = kit_small();
     talus_world world = kit_world(&def), other = kit_world(&def);
-    talus_difference where;
+    talus_parting where;
     kit_box(&world, kit_vec(0.0f, 0.0f, 0.0f), 0.5f);
     kit_box(&other, kit_vec(0.0f, 0.0f, 0.0f), 0.5f);
     assert_true(talus_world_hash(&world) == talus_world_hash(&other));
-    assert_int_equal(talus_world_first_difference(&world, &other, &where), 0);
+    assert_int_equal(talus_world_part(&world, &other, 0, &where), 0);
     talus_body body = {1, 1};
     OK(talus_body_set_velocity(&world, body, kit_vec(0.0f, 1.4e-45f, 0.0f), kit_vec(0.0f, 0.0f, 0.0f)));
     assert_true(talus_world_hash(&world) != talus_world_hash(&other));
-    assert_int_equal(talus_world_first_difference(&world, &other, &where), 1);
-    assert_non_null(where.column);
+    assert_int_equal(talus_world_part(&world, &other, 0, &where), 1);
+    assert_non_null(where.column.name);
     assert_int_equal(where.row, 1);
     assert_true(talus_world_hash(NULL) == 0);
-    assert_int_equal(talus_world_first_difference(NULL, &other, &where), -1);
+    assert_int_equal(talus_world_part(NULL, &other, 0, &where), -1);
     def.body_capacity++;
     talus_world unlike = kit_world(&def);
-    assert_int_equal(talus_world_first_difference(&unlike, &other, &where), -1);
+    assert_int_equal(talus_world_part(&unlike, &other, 0, &where), -1);
     kit_end(&unlike);
     kit_end(&world);
     kit_end(&other);

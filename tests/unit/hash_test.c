@@ -92,8 +92,8 @@ static void each_bit_counts(void **state) {
     size_t count = columns_of(tl_header_of(&world), columns), flips = 0;
     const uint64_t hash = talus_world_hash(&world);
     assert_true(hash == talus_world_hash(&copy));
-    talus_difference d;
-    assert_int_equal(talus_world_first_difference(&world, &copy, &d), 0);
+    talus_parting d;
+    assert_int_equal(talus_world_part(&world, &copy, 0, &d), 0);
     for (size_t c = 0; c < count; c++) {
         unsigned char *base = (unsigned char *)copy.block + columns[c].offset;
         size_t length = columns[c].rows * columns[c].row;
@@ -105,10 +105,10 @@ static void each_bit_counts(void **state) {
         for (size_t bit = 0; bit < 8u * length; bit += stride, flips++) {
             base[bit / 8u] ^= (unsigned char)(1u << bit % 8u);
             assert_true(talus_world_hash(&copy) != hash);
-            assert_int_equal(talus_world_first_difference(&world, &copy, &d), 1);
-            assert_string_equal(d.column, columns[c].name);
+            assert_int_equal(talus_world_part(&world, &copy, 0, &d), 1);
+            assert_string_equal(d.column.name, columns[c].name);
             assert_int_equal(d.row, bit / 8u / columns[c].row);
-            assert_int_equal(d.byte, bit / 8u % columns[c].row);
+            assert_int_equal(d.word, bit / 8u % columns[c].row / d.column.word_bytes);
             base[bit / 8u] ^= (unsigned char)(1u << bit % 8u);
         }
     }
@@ -124,8 +124,8 @@ static void each_bit_counts(void **state) {
     /* The header's settings do. */
     tl_header_of(&copy)->settings.gravity.y += 1.0f;
     assert_true(talus_world_hash(&copy) != hash);
-    assert_int_equal(talus_world_first_difference(&world, &copy, &d), 1);
-    assert_string_equal(d.column, "header");
+    assert_int_equal(talus_world_part(&world, &copy, 0, &d), 1);
+    assert_string_equal(d.column.name, "settings");
     kit_end(&world);
     kit_end(&copy);
     kit_free(hull);
@@ -137,11 +137,11 @@ static void comparing_what_cannot_be(void **state) {
     talus_world a = kit_world(&def), none = {NULL, NULL, 0, NULL};
     def.body_capacity++;
     talus_world b = kit_world(&def);
-    talus_difference d;
-    assert_int_equal(talus_world_first_difference(&a, &b, &d), -1);
-    assert_int_equal(talus_world_first_difference(&a, &none, &d), -1);
-    assert_int_equal(talus_world_first_difference(NULL, &a, &d), -1);
-    assert_int_equal(talus_world_first_difference(&a, &a, NULL), -1);
+    talus_parting d;
+    assert_int_equal(talus_world_part(&a, &b, 0, &d), -1);
+    assert_int_equal(talus_world_part(&a, &none, 0, &d), -1);
+    assert_int_equal(talus_world_part(NULL, &a, 0, &d), -1);
+    assert_int_equal(talus_world_part(&a, &a, 0, NULL), -1);
     assert_true(talus_world_hash(&none) == 0);
     kit_end(&a);
     kit_end(&b);

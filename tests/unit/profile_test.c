@@ -105,7 +105,7 @@ static void has_the_times_of_the_clock(void **state) {
 static void the_state_knows_nothing_of_it(void **state) {
     (void)state;
     talus_world with = ringed(3), without = ringed(0);
-    talus_difference difference;
+    talus_parting difference;
     busy(&with);
     busy(&without);
     for (int i = 0; i < 60; i++) {
@@ -113,7 +113,7 @@ static void the_state_knows_nothing_of_it(void **state) {
         kit_steps(&without, 1);
         assert_true(talus_world_hash(&with) == talus_world_hash(&without));
     }
-    assert_int_equal(talus_world_first_difference(&with, &without, &difference), 0);
+    assert_int_equal(talus_world_part(&with, &without, 0, &difference), 0);
     size_t bytes = talus_world_save_size(&without);
     assert_int_equal(bytes, talus_world_save_size(&with));
     void *snapshot = kit_alloc(bytes);

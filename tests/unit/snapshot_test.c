@@ -169,9 +169,9 @@ static void *save(const yard *y, size_t *size) {
 }
 
 static void assert_alike(const talus_world *a, const talus_world *b) {
-    talus_difference d;
-    if (talus_world_hash(a) != talus_world_hash(b) && talus_world_first_difference(a, b, &d) == 1) {
-        print_error("differ in %s, row %u, byte %u\n", d.column, (unsigned)d.row, (unsigned)d.byte);
+    talus_parting d;
+    if (talus_world_hash(a) != talus_world_hash(b) && talus_world_part(a, b, 0, &d) == 1) {
+        print_error("differ in %s, row %u, word %u\n", d.column.name, (unsigned)d.row, (unsigned)d.word);
     }
     assert_true(talus_world_hash(a) == talus_world_hash(b));
 }

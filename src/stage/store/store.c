@@ -137,36 +137,3 @@ uint64_t talus_world_hash(const talus_world *world) {
     }
     return tl_hash_end(&hash);
 }
-
-int talus_world_first_difference(const talus_world *a, const talus_world *b, talus_difference *out) {
-    if (!tl_world_is_sound(a) || !tl_world_is_sound(b) || !out) {
-        return -1;
-    }
-    const tl_header *ha = tl_header_of(a), *hb = tl_header_of(b);
-    if (memcmp(ha->capacity, hb->capacity, TL_COUNT_OF_STATE * sizeof *ha->capacity) != 0) {
-        return -1;
-    }
-    const unsigned char *pa = (const unsigned char *)&ha->settings, *pb = (const unsigned char *)&hb->settings;
-    size_t bytes = (size_t)((const unsigned char *)&ha->end - pa);
-    for (size_t k = 0; k < bytes; k++) {
-        if (pa[k] != pb[k]) {
-            out->column = "header", out->row = 0, out->byte = (uint32_t)k;
-            return 1;
-        }
-    }
-    for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
-        if (COLUMNS[i].life != LIFE_STATE) {
-            continue;
-        }
-        bytes = (size_t)tl_store_live(ha, (tl_column_id)i) * COLUMNS[i].row_bytes;
-        pa = column_bytes(ha, i), pb = column_bytes(hb, i);
-        for (size_t k = 0; memcmp(pa, pb, bytes) != 0 && k < bytes; k++) {
-            if (pa[k] != pb[k]) {
-                out->column = COLUMNS[i].name;
-                out->row = (uint32_t)(k / COLUMNS[i].row_bytes), out->byte = (uint32_t)(k % COLUMNS[i].row_bytes);
-                return 1;
-            }
-        }
-    }
-    return 0;
-}
