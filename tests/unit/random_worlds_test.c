@@ -385,8 +385,8 @@ static uint64_t run(uint64_t seed, talus_isa isa, talus_isa other) {
             OK(talus_world_set_isa(&twin, other));
             assert_int_equal(talus_world_step(&twin, dt, NULL, NULL), TALUS_OK);
             if (talus_world_part(&s.world, &twin, 0, &d) == 1) {
-                print_error("seed %lu step %d: %s row %u word %u\n", (unsigned long)seed, step, d.column.name,
-                            d.row, d.word);
+                print_error("seed %lu step %d: %s row %u word %u\n", (unsigned long)seed, step, d.column.name, d.row,
+                            d.word);
                 fail();
             }
         }
