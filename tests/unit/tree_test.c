@@ -35,6 +35,13 @@ static void as_brute_force(void **state) {
             box[i] = random_box(&seed, 10.0f, draw(&seed) % 8u ? 1.0f : 8.0f);
             leaf[i] = tl_tree_insert(h, tree[i], i, &box[i]);
             in_tree++;
+        } else if (draw(&seed) % 4u) { /* a little way, or anywhere */
+            talus_aabb next = random_box(&seed, 10.0f, 1.0f);
+            float way = draw_float(&seed, -0.2f, 0.2f);
+            talus_aabb near = {kit_vec(box[i].lower.x + way, box[i].lower.y, box[i].lower.z - way),
+                               kit_vec(box[i].upper.x + way, box[i].upper.y, box[i].upper.z - way)};
+            box[i] = draw(&seed) & 1u ? near : next;
+            leaf[i] = tl_tree_move(h, tree[i], leaf[i], &box[i]);
         } else {
             tl_tree_remove(h, tree[i], leaf[i]);
             leaf[i] = TL_NONE;

@@ -81,22 +81,28 @@ static int has_room(const tl_header *h, uint32_t body, uint32_t way) {
     return (int32_t)(tl_body_room(h)[body] - tl_body_motion(h)[body] - way) > 0;
 }
 
+/* Those who call this renew or lessen the body's room. */
 static void note_looked(tl_header *h, uint32_t shape, float free) {
     tl_shape_track *t = &tl_shape_tracks(h)[shape];
     uint32_t body = tl_shapes(h)[shape].body;
     t->motion = tl_body_motion(h)[body];
     t->free = tl_min(free, MOST_FREE);
     t->stale = 0;
-    lessen_room(h, body, shape);
 }
 
 static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
     tl_shape_track *t = &tl_shape_tracks(h)[shape];
     uint32_t body = tl_shapes(h)[shape].body;
-    tl_shape_leave_tree(h, shape);
-    t->still = tl_body_type(&tl_bodies(h)[body]) == TALUS_STATIC;
+    uint32_t still = tl_body_type(&tl_bodies(h)[body]) == TALUS_STATIC;
+    int tree = still ? TL_TREE_STILL : TL_TREE_MOVING;
     t->fat = fattened(h, shape, box, dt);
-    t->node = tl_tree_insert(h, t->still ? TL_TREE_STILL : TL_TREE_MOVING, shape, &t->fat) + 1u;
+    if (t->node && t->still == still) {
+        t->node = tl_tree_move(h, tree, t->node - 1u, &t->fat) + 1u;
+    } else {
+        tl_shape_leave_tree(h, shape);
+        t->still = still;
+        t->node = tl_tree_insert(h, tree, shape, &t->fat) + 1u;
+    }
     note_looked(h, shape, margin_of(h, shape));
     h->counters.proxies_refit++;
 }
@@ -169,6 +175,7 @@ void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
             enter(h, shape, &box, dt);
             k++;
         }
+        lessen_room(h, tl_shapes(h)[shape].body, shape);
     }
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t body = tl_awake_body(h)[k];

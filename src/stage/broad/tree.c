@@ -45,8 +45,9 @@ static void set_child(tl_tree_node *nodes, uint32_t parent, int side, uint32_t c
     nodes[child].parent = parent;
 }
 
-/* Swaps a child of i with a grandchild of the other side, the one swap of four that lowers the area most. */
-static void rotate(tl_tree_node *nodes, uint32_t i) {
+/* Swaps a child of i with a grandchild of the other side, the one swap of four that lowers the area most; returns
+ * whether it did. */
+static int rotate(tl_tree_node *nodes, uint32_t i) {
     tl_tree_node *n = &nodes[i];
     float best = 0.0f;
     int best_side = -1, best_grand = 0;
@@ -64,12 +65,13 @@ static void rotate(tl_tree_node *nodes, uint32_t i) {
         }
     }
     if (best_side < 0) {
-        return;
+        return 0;
     }
     uint32_t low = n->child[best_side], high = n->child[1 - best_side], grand = nodes[high].child[best_grand];
     set_child(nodes, i, best_side, grand);
     set_child(nodes, high, best_grand, low);
     refresh(nodes, high);
+    return 1;
 }
 
 /* Where a new leaf costs least: goes down while a child is cheaper than staying, O(log n). */
@@ -96,8 +98,9 @@ static uint32_t find_sibling(const tl_tree_node *nodes, uint32_t root, const tal
 static void refit_up(tl_tree_node *nodes, uint32_t i) {
     while (i != TL_NONE) {
         refresh(nodes, i);
-        rotate(nodes, i);
-        refresh(nodes, i);
+        if (rotate(nodes, i)) {
+            refresh(nodes, i);
+        }
         i = nodes[i].parent;
     }
 }
@@ -147,6 +150,24 @@ void tl_tree_remove(tl_header *h, int tree, uint32_t leaf) {
     }
     give_node(h, joint);
     give_node(h, leaf);
+}
+
+/* How much the box around a leaf and its sibling may grow for the leaf to stay where it is. */
+#define MOST_GROWTH 1.2f
+
+uint32_t tl_tree_move(tl_header *h, int tree, uint32_t leaf, const talus_aabb *box) {
+    tl_tree_node *nodes = tl_nodes(h);
+    uint32_t joint = nodes[leaf].parent, shape = nodes[leaf].child[1];
+    if (joint != TL_NONE) {
+        uint32_t sibling = nodes[joint].child[nodes[joint].child[0] == leaf];
+        if (joined_area(&nodes[sibling].box, box) > MOST_GROWTH * area(&nodes[joint].box)) {
+            tl_tree_remove(h, tree, leaf);
+            return tl_tree_insert(h, tree, shape, box);
+        }
+    }
+    nodes[leaf].box = *box;
+    refit_up(nodes, joint);
+    return leaf;
 }
 
 void tl_tree_begin(tl_tree_walk *walk, const tl_header *h, int tree, const talus_aabb *box) {

@@ -12,6 +12,8 @@ enum { TL_TREE_MOVING = 0, TL_TREE_STILL = 1 };
 /* Puts a shape's box into a tree; O(log n). Returns the leaf. The node pool has room for all shapes. */
 uint32_t tl_tree_insert(tl_header *h, int tree, uint32_t shape, const talus_aabb *box);
 void tl_tree_remove(tl_header *h, int tree, uint32_t leaf);
+/* Gives a leaf another box, where it stands or elsewhere in the tree; O(log n). Returns the leaf. */
+uint32_t tl_tree_move(tl_header *h, int tree, uint32_t leaf, const talus_aabb *box);
 
 static inline int tl_aabb_overlap(const talus_aabb *a, const talus_aabb *b) {
     return a->lower.x <= b->upper.x && b->lower.x <= a->upper.x && a->lower.y <= b->upper.y &&
