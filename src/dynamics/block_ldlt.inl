@@ -40,15 +40,15 @@ static void ldlt_diagonal(float *a, uint32_t n) {
 }
 
 /* A block below a diagonal d becomes L, or stays L D where `whole`, and goes into the diagonal t that its rows belong
- * to: row by row, with what is needed of d at hand. */
+ * to: row by row, with what is needed of d at hand. L and L D are left packed in l and ld. */
 static inline void ldlt_couple_of(const float *d, float *b, float *t, uint32_t rows, uint32_t n, uint32_t stride,
-                                  int whole) {
-    wf l[TL_BLOCK_ROWS * TL_BLOCK_ROWS], factor[TL_BLOCK_ROWS * (TL_BLOCK_ROWS + 1u) / 2u];
+                                  int whole, wf *l, wf *ld) {
+    wf factor[TL_BLOCK_ROWS * (TL_BLOCK_ROWS + 1u) / 2u];
     for (uint32_t i = 0; i < n * (n + 1u) / 2u; i++) {
         factor[i] = wf_load(d + i * TL_WIDTH);
     }
     for (uint32_t r = 0; r < rows; r++, b += stride * TL_WIDTH) {
-        wf w[TL_BLOCK_ROWS];
+        wf *w = ld + r * n;
         for (uint32_t c = 0; c < n; c++) {
             w[c] = wf_load(b + c * TL_WIDTH);
             for (uint32_t m = 0; m < c; m++) {
@@ -71,18 +71,19 @@ static inline void ldlt_couple_of(const float *d, float *b, float *t, uint32_t r
 
 /* The usual sizes are compiled on their own. */
 static void ldlt_couple(const float *d, float *b, float *t, uint32_t rows, uint32_t n, uint32_t stride, int whole) {
+    wf l[TL_BLOCK_ROWS * TL_BLOCK_ROWS], ld[TL_BLOCK_ROWS * TL_BLOCK_ROWS];
     switch (rows * 8u + n) {
     case 3u * 8u + 3u:
-        ldlt_couple_of(d, b, t, 3u, 3u, stride, whole);
+        ldlt_couple_of(d, b, t, 3u, 3u, stride, whole, l, ld);
         break;
     case 5u * 8u + 5u:
-        ldlt_couple_of(d, b, t, 5u, 5u, stride, whole);
+        ldlt_couple_of(d, b, t, 5u, 5u, stride, whole, l, ld);
         break;
     case 6u * 8u + 6u:
-        ldlt_couple_of(d, b, t, 6u, 6u, stride, whole);
+        ldlt_couple_of(d, b, t, 6u, 6u, stride, whole, l, ld);
         break;
     default:
-        ldlt_couple_of(d, b, t, rows, n, stride, whole);
+        ldlt_couple_of(d, b, t, rows, n, stride, whole, l, ld);
     }
 }
 
@@ -157,6 +158,51 @@ static void ldlt_hand_up(const tl_block_node *node, const tl_block *block, const
     }
 }
 
+/* A column of two blocks of n rows each, as a path has it: both become L, and go into the diagonals t of their rows and
+ * into the block x that couples them. */
+static inline void ldlt_pair_of(const float *d, float *const b[2], float *const t[2], float *x, uint32_t n,
+                                uint32_t stride, uint32_t x_stride) {
+    wf l[2][TL_BLOCK_ROWS * TL_BLOCK_ROWS], ld[2][TL_BLOCK_ROWS * TL_BLOCK_ROWS];
+    ldlt_couple_of(d, b[0], t[0], n, n, stride, 0, l[0], ld[0]);
+    ldlt_couple_of(d, b[1], t[1], n, n, stride, 0, l[1], ld[1]);
+    for (uint32_t r = 0; r < n; r++) {
+        for (uint32_t c = 0; c < n; c++) {
+            float *at = x + (r * x_stride + c) * TL_WIDTH;
+            wf sum = wf_mul(ld[1][r * n], l[0][c * n]);
+            for (uint32_t m = 1; m < n; m++) {
+                sum = wf_mad(sum, ld[1][r * n + m], l[0][c * n + m]);
+            }
+            wf_store(at, wf_sub(wf_load(at), sum));
+        }
+    }
+}
+
+static void ldlt_pair_three(const float *d, float *const b[2], float *const t[2], float *x, uint32_t stride,
+                            uint32_t x_stride) {
+    ldlt_pair_of(d, b, t, x, 3u, stride, x_stride);
+}
+static void ldlt_pair_five(const float *d, float *const b[2], float *const t[2], float *x, uint32_t stride,
+                           uint32_t x_stride) {
+    ldlt_pair_of(d, b, t, x, 5u, stride, x_stride);
+}
+
+/* Whether column j was such a pair of a usual size, which is done with then. */
+static int ldlt_pair(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t j, float *v) {
+    const tl_block *k = block + node[j].first, *target = block + node[k->node].first;
+    uint32_t n = live[j];
+    if (node[j].blocks != 2u || (n != 3u && n != 5u) || live[k[0].node] != n || live[k[1].node] != n) {
+        return 0;
+    }
+    while (target->node != k[1].node) {
+        target++;
+    }
+    float *const b[2] = {v + k[0].values * TL_WIDTH, v + k[1].values * TL_WIDTH};
+    float *const t[2] = {v + node[k[0].node].diagonal * TL_WIDTH, v + node[k[1].node].diagonal * TL_WIDTH};
+    (n == 3u ? ldlt_pair_three : ldlt_pair_five)(v + node[j].diagonal * TL_WIDTH, b, t, v + target->values * TL_WIDTH,
+                                                 node[j].rows, node[k->node].rows);
+    return 1;
+}
+
 static void ldlt_raise(const tl_block_node *node, const uint32_t *live, uint32_t nodes, float *v) {
     wf raise = wf_set1(1.0f + TL_BLOCK_RAISE);
     for (uint32_t j = 0; j < nodes; j++) {
@@ -175,6 +221,9 @@ static void ldlt_eliminate(const tl_block_node *node, const tl_block *block, con
         float *d = v + node[j].diagonal * TL_WIDTH;
         int several = node[j].blocks > 1u;
         ldlt_diagonal(d, live[j]);
+        if (several && ldlt_pair(node, block, live, j, v)) {
+            continue;
+        }
         for (uint32_t k = 0; k < node[j].blocks; k++) {
             const tl_block *b = &block[node[j].first + k];
             ldlt_couple(d, v + b->values * TL_WIDTH, v + node[b->node].diagonal * TL_WIDTH, live[b->node], live[j],
