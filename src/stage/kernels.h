@@ -33,7 +33,7 @@ typedef struct tl_kernels {
     void (*collide_balls)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
     void (*collide_capsules)(const tl_step *step, const tl_pair_batch *batch, tl_one_points *out);
     void (*collide_boxes)(const tl_step *step, const tl_pair_batch *batch, tl_box_manifolds *out);
-    tl_kernel velocity, position, fly, push; /* ranges of eight body rows */
+    tl_kernel fill_bodies, velocity, position, fly, push, commit; /* ranges of eight body rows */
     tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, strike_contacts,
         store_contacts;                                                                         /* groups */
     tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */

@@ -5,9 +5,12 @@
 #include "base/vec_lanes.h"
 #include "base/width_eight.h"
 
-#include "stage/motion/motion.inl"
+#include "stage/motion/motion.inl" /* first: it has what rows are loaded by */
+
+#include "stage/commit/commit.inl"
 #include "stage/narrow/batch.inl"
 #include "stage/narrow/box_batch.inl"
+#include "stage/row/body_rows.inl"
 #include "stage/row/contact_rows.inl"
 #include "stage/row/joint_rows.inl"
 #include "stage/solve/contacts.inl"
@@ -16,30 +19,11 @@
 #include "stage/solve/linked_joints.inl"
 
 const tl_kernels TL_KERNELS = {
-    place_pairs,
-    collide_balls,
-    collide_capsules,
-    collide_boxes,
-    velocity,
-    position,
-    fly,
-    push,
-    prepare_contacts,
-    warm_contacts,
-    solve_contacts,
-    relax_contacts,
-    push_contacts,
-    strike_contacts,
-    store_contacts,
-    begin_joints,
-    turn_joints,
-    solve_joints,
-    relax_joints,
-    push_joints,
-    store_joints,
-    read_velocities,
-    read_errors,
-    apply_impulses,
-    apply_pushes,
-    solve_linkages,
+    place_pairs,    collide_balls,  collide_capsules, collide_boxes,
+    fill_bodies,    velocity,       position,         fly,
+    push,           commit,         prepare_contacts, warm_contacts,
+    solve_contacts, relax_contacts, push_contacts,    strike_contacts,
+    store_contacts, begin_joints,   turn_joints,      solve_joints,
+    relax_joints,   push_joints,    store_joints,     read_velocities,
+    read_errors,    apply_impulses, apply_pushes,     solve_linkages,
 };

@@ -39,11 +39,11 @@ void tl_stage_stiffness(tl_step *step);
 #define TL_MOST_STIFF 1.0f
 #define TL_STIFF_PULL (0.25f * TL_MOST_STIFF) /* of one joint: from here on it is looked what all of them make */
 
+/* Of the least principal inertia against the middle one, inverted: from here on a body is slender. */
+#define TL_SLENDER 3.0f
+
 /* Keeps velocities and displacements off the axes that a body is locked to. */
 void tl_stage_locks(tl_step *step);
-
-/* commit: poses and velocities back to the bodies. */
-void tl_stage_commit(tl_step *step);
 
 /* events: what began, ended, hit and broke. */
 void tl_events_begin(tl_header *h);

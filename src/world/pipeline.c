@@ -222,7 +222,7 @@ talus_status tl_run_world_step(talus_world *world, uint32_t i, talus_command *c)
     tl_stage_narrow(&step);
     tl_watch_lap(&w, TALUS_STAGE_NARROW);
     solve(&step, &w);
-    tl_stage_commit(&step);
+    tl_kernels_of((talus_isa)h->isa)->commit(&step, 0, step.rows);
     tl_stage_leave(h, step.geometry);
     tl_watch_lap(&w, TALUS_STAGE_COMMIT);
     tl_watch_islands(&w, &step);

@@ -5,25 +5,11 @@
 #include "base/eigen.h"
 #include "stage/stages.h"
 
-/* K stays as it is for a step, but the gyroscopic term follows the turning body. Where a joint ties the two together
- * they must not differ by more than this share. */
-#define MOST_INERTIA_TURN 0.1f
-#define SLENDER 3.0f /* of the least principal inertia against the middle one, inverted */
-
-/* The rate (1/s) at which the inverse inertia changes in the world, as a share of itself: a body that spins about an
- * axis of symmetry keeps it, a rod that is swung does not. */
-static float inertia_turn(talus_quat frame, talus_vec3 s, talus_vec3 w) {
-    talus_vec3 own = tl_abs3(tl_rotate_back(frame, w)), k = tl_mul(s, s);
-    float x = own.x * tl_abs(k.y - k.z) / tl_max(k.y, k.z), y = own.y * tl_abs(k.z - k.x) / tl_max(k.z, k.x);
-    float z = own.z * tl_abs(k.x - k.y) / tl_max(k.x, k.y);
-    return tl_max(x, tl_max(y, z));
-}
-
 /* Whether one principal inertia is far below the two others. */
 static int is_slender(talus_vec3 s) {
     float most = tl_max(s.x, tl_max(s.y, s.z)), least = tl_min(s.x, tl_min(s.y, s.z));
     float middle = s.x + s.y + s.z - most - least;
-    return most * most > SLENDER * middle * middle;
+    return most * most > TL_SLENDER * middle * middle;
 }
 
 static void rest_row(tl_header *h, uint32_t row) {
@@ -73,82 +59,85 @@ static talus_vec3 whiten(talus_quat frame, talus_vec3 s, talus_vec3 w) {
     return tl_v(s.x > 0.0f ? own.x / s.x : 0.0f, s.y > 0.0f ? own.y / s.y : 0.0f, s.z > 0.0f ? own.z / s.z : 0.0f);
 }
 
-static void fill_row(tl_step *step, uint32_t body, uint32_t row) {
+/* Whether a body's rows are not what fill_bodies makes of them: it does not turn, or not about all axes. */
+static int is_unlike(const tl_header *h, uint32_t body) {
+    const float *s = tl_body_inertias(h)[body].s;
+    uint32_t flags = tl_bodies(h)[body].flags;
+    return (flags & TL_BODY_TYPE) != TALUS_DYNAMIC || (flags >> TL_BODY_LOCKS & 56u) ||
+           (s[0] == 0.0f && s[1] == 0.0f && s[2] == 0.0f);
+}
+
+static void fill_unlike(tl_step *step, uint32_t body, uint32_t row) {
     tl_header *h = step->h;
     const tl_body_inertia *in = &tl_body_inertias(h)[body];
     uint32_t flags = tl_bodies(h)[body].flags, locks = flags >> TL_BODY_LOCKS;
     const tl_row8 *pose = &tl_body_pose(h)[body], *v = &tl_body_velocity(h)[body];
-    int dynamic = (flags & TL_BODY_TYPE) == TALUS_DYNAMIC, turns = dynamic;
-    talus_quat frame = tl_row_quat(pose);
-    talus_vec3 s = tl_v(in->s[0], in->s[1], in->s[2]), w = tl_row_345(v), linear = tl_row_xyz(v);
-    float gyro = flags & TL_BODY_GYRO ? 1.0f : 0.0f;
-    if (dynamic && locks & 56u) {
+    int dynamic = (flags & TL_BODY_TYPE) == TALUS_DYNAMIC, turns = dynamic && (locks & 56u);
+    talus_quat frame = tl_quat_identity();
+    talus_vec3 s = tl_v(1.0f, 1.0f, 1.0f), a = tl_v(0.0f, 0.0f, 0.0f);
+    if (turns) { /* otherwise it keeps the spin it has, which u then is */
         locked_frame(h, body, locks, &frame, &s);
-        gyro = 0.0f;
     }
-    if (gyro > 0.0f && tl_bodies(h)[body].first_joint != TL_NONE &&
-        inertia_turn(frame, s, w) * step->dt > MOST_INERTIA_TURN) {
-        gyro = 0.0f;
-    }
-    if (!dynamic || (s.x == 0.0f && s.y == 0.0f && s.z == 0.0f && !(locks & 56u))) {
-        turns = 0; /* keeps the spin it has, which u then is */
-        frame = tl_quat_identity();
-        s = tl_v(1.0f, 1.0f, 1.0f);
-        gyro = 0.0f;
-    }
+    talus_vec3 u = whiten(frame, s, tl_row_345(v));
     tl_row8 *rv = &tl_row_velocity(h)[row], *rf = &tl_row_frame(h)[row], *ra = &tl_row_force(h)[row];
     tl_row_pose(h)[row] = *pose;
-    talus_vec3 u = whiten(frame, s, w), momentum = tl_v(0.0f, 0.0f, 0.0f);
-    if (gyro > 0.0f) { /* u = s R^T L; the momentum is kept from step to step, for w changes as the body turns */
-        const tl_row8 *kept = &tl_body_momentum(h)[body];
-        momentum = tl_rotate(frame, tl_v(u.x / s.x, u.y / s.y, u.z / s.z));
-        if (kept->f[7] > 0.0f) {
-            momentum = tl_row_xyz(kept);
-            u = tl_mul(s, tl_rotate_back(frame, momentum));
-        }
-    }
     memset(&tl_row_momentum(h)[row], 0, sizeof(tl_row8));
-    tl_row_set6(&tl_row_momentum(h)[row], momentum, u);
+    tl_row_set6(&tl_row_momentum(h)[row], a, u);
     tl_row_momentum(h)[row].f[6] = is_slender(s) ? 1.0f : 0.0f;
-    tl_row_set6(rv, linear, u);
+    tl_row_set6(rv, tl_row_xyz(v), u);
     rv->f[6] = dynamic ? in->inverse_mass : 0.0f;
     rv->f[7] = turns ? 1.0f : 0.0f;
-    if ((locks & 7u) == 7u) {
-        rv->f[6] = 0.0f;
-    }
     memset(&tl_row_push(h)[row], 0, sizeof(tl_row8));
     tl_row_push(h)[row].f[6] = rv->f[6], tl_row_push(h)[row].f[7] = rv->f[7];
     tl_row_before(h)[row] = tl_row_push(h)[row];
     memset(&tl_row_moved(h)[row], 0, sizeof(tl_row8));
-    tl_row_moved(h)[row].f[6] = dynamic ? (float)locks : 0.0f;
     rf->f[0] = frame.x, rf->f[1] = frame.y, rf->f[2] = frame.z, rf->f[3] = frame.w;
-    rf->f[4] = s.x, rf->f[5] = s.y, rf->f[6] = s.z, rf->f[7] = gyro;
-    talus_vec3 a = tl_v(0.0f, 0.0f, 0.0f), turn = a;
+    rf->f[4] = s.x, rf->f[5] = s.y, rf->f[6] = s.z, rf->f[7] = 0.0f;
     if (dynamic && in->inverse_mass > 0.0f) {
         a = tl_scale(h->settings.gravity, in->gravity_scale);
     }
-    if (dynamic && flags & TL_BODY_FORCE) {
-        const tl_row8 *f = &tl_body_force(h)[body];
-        a = tl_mad(a, in->inverse_mass, tl_row_xyz(f));
-        if (turns) {
-            turn = tl_mul(s, tl_rotate_back(frame, tl_row_345(f)));
-        }
-    }
-    tl_row_set6(ra, a, turn);
+    tl_row_set6(ra, a, tl_v(0.0f, 0.0f, 0.0f));
     ra->f[6] = dynamic ? 1.0f / (1.0f + step->sub * in->linear_damping) : 1.0f;
     ra->f[7] = dynamic ? 1.0f / (1.0f + step->sub * in->angular_damping) : 1.0f;
-    step->any_locks |= dynamic && locks != 0;
+}
+
+static void lock_row(tl_header *h, uint32_t row, uint32_t locks) {
+    tl_row_moved(h)[row].f[6] = (float)locks;
+    if ((locks & 7u) == 7u) {
+        tl_row_velocity(h)[row].f[6] = tl_row_before(h)[row].f[6] = tl_row_push(h)[row].f[6] = 0.0f;
+    }
+}
+
+static void add_force(tl_header *h, uint32_t body, uint32_t row) {
+    const tl_row8 *f = &tl_body_force(h)[body], *rf = &tl_row_frame(h)[row];
+    tl_row8 *ra = &tl_row_force(h)[row];
+    talus_quat frame = {rf->f[0], rf->f[1], rf->f[2], rf->f[3]};
+    talus_vec3 a = tl_mad(tl_row_xyz(ra), tl_body_inertias(h)[body].inverse_mass, tl_row_xyz(f));
+    talus_vec3 turn = tl_mul(tl_v(rf->f[4], rf->f[5], rf->f[6]), tl_rotate_back(frame, tl_row_345(f)));
+    tl_row_set6(ra, a, tl_row_velocity(h)[row].f[7] > 0.0f ? turn : tl_v(0.0f, 0.0f, 0.0f));
 }
 
 void tl_stage_body_rows(tl_step *step) {
     tl_header *h = step->h;
-    step->any_locks = 0;
-    rest_row(h, 0);
-    for (uint32_t k = 0; k < h->awake_bodies; k++) {
-        fill_row(step, tl_awake_body(h)[k], k + 1u);
-    }
     uint32_t used = h->awake_bodies + 1u;
+    step->any_locks = 0;
     step->rows = (used + TL_LANES - 1u) / TL_LANES * TL_LANES;
+    tl_kernels_of((talus_isa)h->isa)->fill_bodies(step, 0, step->rows);
+    rest_row(h, 0);
+    for (uint32_t row = 1; row < used; row++) {
+        uint32_t body = tl_awake_body(h)[row - 1u], flags = tl_bodies(h)[body].flags;
+        int dynamic = (flags & TL_BODY_TYPE) == TALUS_DYNAMIC;
+        if (is_unlike(h, body)) {
+            fill_unlike(step, body, row);
+        }
+        if (dynamic && flags >> TL_BODY_LOCKS) {
+            lock_row(h, row, flags >> TL_BODY_LOCKS);
+            step->any_locks = 1;
+        }
+        if (dynamic && flags & TL_BODY_FORCE) {
+            add_force(h, body, row);
+        }
+    }
     for (uint32_t row = used; row < step->rows; row++) {
         rest_row(h, row);
     }
