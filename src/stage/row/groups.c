@@ -184,10 +184,14 @@ void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint) 
     tl_joint_row *rows = tl_joint_row_pool(h) + g->first_row;
     for (uint32_t r = 0; r < j->rows; r++) {
         const tl_joint_param *p = &j->param[r];
-        rows[r].lower[k] = p->lower, rows[r].upper[k] = p->upper;
+        rows[r].lower[k] = p->lower;
+        rows[r].impulse[k] = s->impulse[r] * step->warm_scale;
+        if (r < j->fixed) {
+            continue; /* an equality has no more */
+        }
+        rows[r].upper[k] = p->upper;
         rows[r].stiffness[k] = p->stiffness, rows[r].damping[k] = p->damping;
         rows[r].speed[k] = p->speed, rows[r].most[k] = p->most, rows[r].per_mass[k] = p->per_mass;
-        rows[r].impulse[k] = s->impulse[r] * step->warm_scale;
     }
     if (g->needs & TL_JOINT_POINT) {
         talus_quat frame = tl_quat_mul(tl_row_quat(&tl_row_pose(h)[g->a[k]]), a.rotation);
@@ -209,7 +213,7 @@ void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint) 
 
 /* Awake joints by colour; counting sort. */
 static uint32_t order_joints(tl_header *h) {
-    uint32_t start[TL_COLORS + 2u], total = 0;
+    uint32_t start[TL_COLORS + 2u], total = 0, most = 0;
     const uint32_t *awake = tl_awake_joint(h);
     uint32_t *order = tl_joint_order(h);
     if (h->awake_joints == 0) {
@@ -217,9 +221,11 @@ static uint32_t order_joints(tl_header *h) {
     }
     memset(start, 0, sizeof start);
     for (uint32_t k = 0; k < h->awake_joints; k++) {
-        start[tl_joints(h)[awake[k]].color]++;
+        uint32_t color = tl_joints(h)[awake[k]].color;
+        start[color]++;
+        most = color > most ? color : most;
     }
-    for (uint32_t i = 0; i <= TL_COLORS; i++) {
+    for (uint32_t i = 0; i <= most; i++) {
         uint32_t n = start[i];
         start[i] = total;
         total += n;

@@ -277,34 +277,52 @@ static void make_joint_rows(const tl_step *step, tl_joint_group *g) {
     }
 }
 
+static inline tl_f8 finite_or_zero(tl_f8 x) { return tl_f8_and_mask(tl_f8_eq(tl_f8_sub(x, x), tl_f8_zero()), x); }
+static inline v8 v8_finite_or_zero(v8 a) {
+    return v8_of(finite_or_zero(a.x), finite_or_zero(a.y), finite_or_zero(a.z));
+}
+
+/* The impulses of rows that hold a point, from the world's axes to frame a's. */
+static inline void impulses_to_frame(const tl_step *step, const tl_joint_group *g, tl_f8 impulse[3]) {
+    tl_f8 r[8];
+    tl_f8_load_rows(tl_row_pose(step->h)->f, g->a, r);
+    q8 own = q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3]));
+    q8 frame = q8_mul(q8_of(r[3], r[4], r[5], r[6]), own);
+    v8 back = v8_finite_or_zero(q8_rotate_back(frame, v8_of(impulse[0], impulse[1], impulse[2])));
+    impulse[0] = back.x, impulse[1] = back.y, impulse[2] = back.z;
+}
+
 /* Impulses back to the joints, with the mean force and torque on b. */
 static void store_joints(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
+        tl_f8 impulse[TL_JOINT_ROWS];
+        v8 force = v8_zero(), torque = v8_zero();
+        for (uint32_t r = 0; r < g->rows; r++) {
+            tl_f8 now = tl_f8_load(rows[r].impulse);
+            v8 *sum = is_linear_row(g->code[r]) ? &force : &torque;
+            *sum = v8_mad(*sum, tl_f8_mul(now, tl_f8_set1(step->inverse_sub)), v8_load(rows[r].n[0]));
+            impulse[r] = finite_or_zero(now);
+        }
+        if (g->needs & TL_JOINT_POINT) {
+            impulses_to_frame(step, g, impulse);
+        }
+        float out[TL_JOINT_ROWS][TL_LANES], pull[6][TL_LANES];
+        const tl_f8 pulls[6] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
+        for (uint32_t r = 0; r < g->rows; r++) {
+            tl_f8_storeu(out[r], impulse[r]);
+        }
+        for (uint32_t k = 0; k < 6u; k++) {
+            tl_f8_storeu(pull[k], finite_or_zero(pulls[k]));
+        }
         for (uint32_t lane = 0; lane < g->lanes; lane++) {
             tl_joint_state *s = &tl_joint_states(step->h)[g->joint[lane]];
-            for (uint32_t k = 0; k < 3u; k++) {
-                s->force[k] = s->torque[k] = 0.0f;
-            }
             for (uint32_t r = 0; r < g->rows; r++) {
-                float *sum = is_linear_row(g->code[r]) ? s->force : s->torque;
-                float strength = rows[r].impulse[lane] * step->inverse_sub;
-                s->impulse[r] = tl_is_finite(rows[r].impulse[lane]) ? rows[r].impulse[lane] : 0.0f;
-                for (uint32_t k = 0; k < 3u; k++) {
-                    sum[k] += rows[r].n[k][lane] * strength;
-                }
-            }
-            if (g->needs & TL_JOINT_POINT) {
-                talus_quat own = {g->qa[0][lane], g->qa[1][lane], g->qa[2][lane], g->qa[3][lane]};
-                talus_quat frame = tl_quat_mul(tl_row_quat(&tl_row_pose(step->h)[g->a[lane]]), own);
-                talus_vec3 impulse = tl_rotate_back(frame, tl_v(s->impulse[0], s->impulse[1], s->impulse[2]));
-                impulse = tl_is_finite3(impulse) ? impulse : tl_v(0.0f, 0.0f, 0.0f);
-                s->impulse[0] = impulse.x, s->impulse[1] = impulse.y, s->impulse[2] = impulse.z;
+                s->impulse[r] = out[r][lane];
             }
             for (uint32_t k = 0; k < 3u; k++) {
-                s->force[k] = tl_is_finite(s->force[k]) ? s->force[k] : 0.0f;
-                s->torque[k] = tl_is_finite(s->torque[k]) ? s->torque[k] : 0.0f;
+                s->force[k] = pull[k][lane], s->torque[k] = pull[3u + k][lane];
             }
         }
     }

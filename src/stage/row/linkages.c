@@ -164,11 +164,10 @@ static int is_easy(const tl_header *h, const uint32_t *order, uint32_t count) {
 #define WILD_SHARE 0.25f /* of the bodies' reach: how far off a joint may be */
 #define WILD_TURN 0.5f   /* rad in a sub-step: where the curve of an anchor's path is no guide any more */
 
-/* m: how far the locked rows of a joint are off. */
-static float error_of(const tl_header *h, const tl_joint_record *j) {
-    talus_pose a = tl_row_pose_of(&tl_body_pose(h)[j->body_a]), b = tl_row_pose_of(&tl_body_pose(h)[j->body_b]);
-    a = tl_pose_mul(&a, &j->place_a);
-    talus_vec3 d = tl_pose_point_back(&a, tl_pose_point(&b, j->place_b.position));
+/* m: how far the locked rows of a joint are off that holds its frames' origins, which are d apart in the world. */
+static float error_of(const tl_header *h, const tl_joint_record *j, talus_vec3 d) {
+    talus_quat a = tl_quat_mul(tl_row_quat(&tl_body_pose(h)[j->body_a]), j->place_a.rotation);
+    d = tl_rotate_back(a, d);
     const float along[3] = {tl_abs(d.x), tl_abs(d.y), tl_abs(d.z)};
     float most = 0.0f;
     for (uint32_t k = 0; k < j->fixed; k++) {
@@ -186,13 +185,16 @@ static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
     const tl_header *h = step->h;
     for (uint32_t k = 0; k < count; k++) {
         const tl_joint_record *j = &tl_joints(h)[order[k]];
-        const tl_row8 *a = &tl_body_velocity(h)[j->body_a], *b = &tl_body_velocity(h)[j->body_b];
         float reach = 0.0f;
         reach += free_row(h, j->body_a) ? tl_body_inertias(h)[j->body_a].reach : 0.0f;
         reach += free_row(h, j->body_b) ? tl_body_inertias(h)[j->body_b].reach : 0.0f;
-        talus_vec3 wa = tl_row_345(a), wb = tl_row_345(b);
+        talus_pose a = tl_row_pose_of(&tl_body_pose(h)[j->body_a]), b = tl_row_pose_of(&tl_body_pose(h)[j->body_b]);
+        talus_vec3 d = tl_sub(tl_pose_point(&b, j->place_b.position), tl_pose_point(&a, j->place_a.position));
+        float most = WILD_SHARE * reach; /* the rows' errors are no larger than d, but for those of distances */
+        int near = !j->distance_enabled && tl_dot(d, d) < most * most;
+        talus_vec3 wa = tl_row_345(&tl_body_velocity(h)[j->body_a]), wb = tl_row_345(&tl_body_velocity(h)[j->body_b]);
         float spin = tl_max(tl_dot(wa, wa), tl_dot(wb, wb)); /* squared */
-        if (!(spin * (step->sub * step->sub) < WILD_TURN * WILD_TURN) || !(error_of(h, j) < WILD_SHARE * reach)) {
+        if (!(spin * (step->sub * step->sub) < WILD_TURN * WILD_TURN) || !(near || error_of(h, j, d) < most)) {
             return 1;
         }
     }
