@@ -159,6 +159,25 @@ static void chains_and_rings(void **state) {
 }
 
 /* Every body but the first hangs on one before it; joints are taken from the last one. */
+/* All columns but the last two have two blocks of as many rows as a point or a hinge has, which are eliminated in one
+ * go. */
+static void rings_of_a_kind(void **state) {
+    (void)state;
+    static puzzle p;
+    static const uint32_t rows[] = {3, 5};
+    uint32_t seed = 11;
+    for (uint32_t nodes = 4; nodes < 24u; nodes++) {
+        for (int kind = 0; kind < 2; kind++) {
+            tie_chain(&p, nodes, 1);
+            draw_rows(&p, &seed);
+            for (uint32_t i = 0; i < nodes; i++) {
+                p.node[i].rows = rows[kind];
+            }
+            assert_true(compare(&p, &seed) < 2e-2);
+        }
+    }
+}
+
 static void trees(void **state) {
     (void)state;
     static puzzle p;
@@ -272,8 +291,11 @@ static void what_does_not_fit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chains_and_rings),  cmocka_unit_test(trees),
-        cmocka_unit_test(whatever_is_tied),  cmocka_unit_test(the_same_thing_thrice),
+        cmocka_unit_test(chains_and_rings),
+        cmocka_unit_test(rings_of_a_kind),
+        cmocka_unit_test(trees),
+        cmocka_unit_test(whatever_is_tied),
+        cmocka_unit_test(the_same_thing_thrice),
         cmocka_unit_test(what_does_not_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
