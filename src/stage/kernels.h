@@ -14,7 +14,8 @@ typedef struct tl_step {
     float inverse_sub;                          /* 1/s */
     float warm_scale;                           /* this sub-step over the one that the stored impulses come from */
     float bias_rate, mass_scale, impulse_scale; /* of soft contacts */
-    uint32_t rows;                              /* body rows in use, the still one included, rounded up to eight */
+    float spring;  /* N s a sub-step, m and kg of effective mass: of soft contacts at rest */
+    uint32_t rows; /* body rows in use, the still one included, rounded up to eight */
     int any_locks;
     int pushes;  /* something is deep enough, or tied by joints, to be pushed */
     int bounces; /* something has restitution */

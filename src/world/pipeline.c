@@ -19,6 +19,7 @@ static void set_softness(tl_step *step) {
     step->bias_rate = omega / a1;
     step->mass_scale = a2 * a3;
     step->impulse_scale = a3;
+    step->spring = h * omega * omega;
 }
 
 static void begin_step(tl_step *step, const talus_world *world, float dt) {
@@ -179,7 +180,7 @@ static void solve(tl_step *step, tl_watch *w) {
     for (uint32_t i = 0; i < h->groups; i++) {
         bouncing += tl_group_pool(h)[i].bounces != 0;
         rolling |= tl_group_pool(h)[i].rolls;
-        pushed += tl_group_pool(h)[i].deep != 0;
+        pushed += tl_group_pool(h)[i].depth & TL_DEPTH_PUSHED;
     }
     step->pushes |= pushed > 0;
     step->bounces = bouncing > 0;

@@ -38,13 +38,16 @@ typedef struct tl_contact_lane_point {
     float peak[TL_LANES];     /* N s, the largest impulse of the step */
 } tl_contact_lane_point;
 
+/* contact_group.depth: some point is so deep that it is pushed; some manifold has a lift. */
+enum { TL_DEPTH_PUSHED = 1, TL_DEPTH_LIFTED = 2 };
+
 typedef struct tl_contact_group {
     uint32_t a[TL_LANES], b[TL_LANES]; /* body rows */
     uint32_t contact[TL_LANES];
     uint32_t lanes, points;     /* how many are in use */
     uint32_t bounces, rolls;    /* whether any lane has restitution, rolling resistance */
     uint32_t heard;             /* whether any lane has events to tell */
-    uint32_t deep;              /* whether any point is deep enough to be pushed */
+    uint32_t depth;             /* TL_DEPTH_* */
     uint32_t struck;            /* whether any lane bounced in the last sweep */
     uint32_t pressed;           /* bits of lanes that are in a press */
     float normal[3][TL_LANES];  /* from a to b */
@@ -55,6 +58,7 @@ typedef struct tl_contact_group {
     float twist_mass[TL_LANES], lever[TL_LANES];       /* m: of the friction about the normal */
     float slid[2][TL_LANES]; /* m: how far b has slid on a since the manifold was made, when the step began */
     float held[TL_LANES];    /* 1: it did not slide in the last step; else 0 */
+    float lift[TL_LANES];    /* m: as how much deeper than they are the points count */
     float static_friction[TL_LANES], dynamic_friction[TL_LANES], restitution[TL_LANES], rolling[TL_LANES];
     float tangent_impulse[2][TL_LANES], twist_impulse[TL_LANES], rolling_impulse[2][TL_LANES];
     float roll_mass[TL_LANES];
