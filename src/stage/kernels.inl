@@ -1,5 +1,7 @@
 /* All laned kernels, once for the lanes that the including file has chosen; it defines TL_KERNELS as the table's name.
  */
+#include <string.h>
+
 #include "stage/stages.h"
 
 #include "base/vec_lanes.h"
@@ -14,6 +16,7 @@
 #include "stage/solve/impacts.inl"
 #include "stage/solve/joints.inl"
 #include "stage/solve/linked_joints.inl"
+#include "stage/solve/presses.inl"
 
 const tl_kernels TL_KERNELS = {
     place_pairs,
@@ -42,4 +45,7 @@ const tl_kernels TL_KERNELS = {
     apply_impulses,
     apply_pushes,
     solve_linkages,
+    begin_presses,
+    press_velocities,
+    press_errors,
 };

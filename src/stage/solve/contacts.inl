@@ -98,17 +98,22 @@ typedef struct grip {
     tl_f8 s1, s2;
 } grip;
 
+/* m/s: at which what is `way` from where it was gripped is drawn back, if it is held. */
+static inline tl_f8 drawn_back(const tl_step *step, tl_f8 held, tl_f8 way) {
+    tl_f8 reach = tl_f8_set1(TL_GRIP_REACH);
+    tl_f8 rate = tl_f8_mul(held, tl_f8_set1(TL_GRIP_SHARE * step->inverse_sub));
+    return tl_f8_mul(rate, tl_f8_max(tl_f8_min(way, reach), tl_f8_neg(reach)));
+}
+
 static inline grip grip_of(const tl_step *step, const tl_contact_group *g, const pair_motion *m, v8 n) {
     v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
     v8 ja1 = v8_load(g->ja1[0]), jb1 = v8_load(g->jb1[0]), ja2 = v8_load(g->ja2[0]), jb2 = v8_load(g->jb2[0]);
-    tl_f8 reach = tl_f8_set1(TL_GRIP_REACH), back = tl_f8_neg(reach);
-    tl_f8 rate = tl_f8_mul(tl_f8_load(g->held), tl_f8_set1(TL_GRIP_SHARE * step->inverse_sub));
+    tl_f8 held = tl_f8_load(g->held);
     tl_f8 turn1 = tl_f8_sub(v8_dot(jb1, m->db), v8_dot(ja1, m->da));
     tl_f8 turn2 = tl_f8_sub(v8_dot(jb2, m->db), v8_dot(ja2, m->da));
     tl_f8 way1 = tl_f8_add(tl_f8_add(tl_f8_load(g->slid[0]), v8_dot(t1, m->d)), turn1);
     tl_f8 way2 = tl_f8_add(tl_f8_add(tl_f8_load(g->slid[1]), v8_dot(t2, m->d)), turn2);
-    return (grip){tl_f8_mul(rate, tl_f8_max(tl_f8_min(way1, reach), back)),
-                  tl_f8_mul(rate, tl_f8_max(tl_f8_min(way2, reach), back))};
+    return (grip){drawn_back(step, held, way1), drawn_back(step, held, way2)};
 }
 
 static inline void solve_tangent(tl_contact_group *g, pair_velocity *p, grip back, v8 n, tl_f8 pressure) {

@@ -145,9 +145,8 @@ typedef struct tl_linkage {
 } tl_linkage;
 
 #define TL_MOST_PRESSED 128u
-#define TL_PRESS_ROWS 6u
 
-/* A contact that is solved at once with others: the rows of its points, then of both tangents. */
+/* A contact that is solved at once with others; a lane is a row: of its points, then of both tangents. */
 typedef struct tl_pressed {
     uint32_t place;          /* its contact group times eight, plus its lane */
     uint32_t row[2], points; /* body rows */
@@ -155,11 +154,16 @@ typedef struct tl_pressed {
     uint32_t slides;         /* friction had to give way in this solve */
     uint32_t barred;         /* bits of rows that would have pulled at once */
     uint32_t reserved;
-    float n[3][3];                                           /* the normal and the tangents */
-    float j[2][TL_PRESS_ROWS][3];                            /* whitened angular Jacobians of a and b */
-    float impulse[TL_PRESS_ROWS], speed[TL_PRESS_ROWS];      /* before a solve */
-    float mass[2], turns[2];                                 /* of a and b: inverse mass, 1 if impulses turn it */
-    float matrix[TL_PRESS_ROWS * (TL_PRESS_ROWS + 1u) / 2u]; /* the lower half by rows */
+    float mass[2], turns[2]; /* of a and b: inverse mass, 1 if impulses turn it */
+    float held, hold, slide; /* as in the group: 1 if it did not slide, static and dynamic friction */
+    float padding;           /* what follows is aligned */
+    float n[3][TL_LANES];    /* directions of the rows, */
+    float j[2][3][TL_LANES]; /* whitened angular Jacobians of a and b */
+    float gap[TL_LANES];     /* m: separation of points, what tangents have slid, when the step began */
+    float bias[TL_LANES];    /* m/s: what the speeds are to be met beside */
+    float impulse[TL_LANES]; /* N s */
+    float from[TL_LANES];    /* N s, where a round began, */
+    float speed[TL_LANES];   /* m/s, and what it had to meet */
 } tl_pressed;
 
 /* Contacts that hang together through bodies that can be moved. */
