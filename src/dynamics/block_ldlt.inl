@@ -34,6 +34,9 @@ static void ldlt_diagonal(float *a, uint32_t n) {
     case 5:
         ldlt_diagonal_of(a, 5u);
         break;
+    case 6:
+        ldlt_diagonal_of(a, 6u);
+        break;
     default:
         ldlt_diagonal_of(a, n);
     }
@@ -309,6 +312,9 @@ static void ldlt_forward(const float *d, float *x, uint32_t n) {
     case 5:
         ldlt_forward_of(d, x, 5u);
         break;
+    case 6:
+        ldlt_forward_of(d, x, 6u);
+        break;
     default:
         ldlt_forward_of(d, x, n);
     }
@@ -322,6 +328,9 @@ static void ldlt_back(const float *d, float *x, uint32_t n) {
     case 5:
         ldlt_back_of(d, x, 5u);
         break;
+    case 6:
+        ldlt_back_of(d, x, 6u);
+        break;
     default:
         ldlt_back_of(d, x, n);
     }
@@ -332,6 +341,8 @@ static void ldlt_pass(const float *l, const float *x, float *y, uint32_t rows, u
         ldlt_pass_of(l, x, y, 3u, 3u, stride);
     } else if (rows == 5u && n == 5u) {
         ldlt_pass_of(l, x, y, 5u, 5u, stride);
+    } else if (rows == 6u && n == 6u) {
+        ldlt_pass_of(l, x, y, 6u, 6u, stride);
     } else {
         ldlt_pass_of(l, x, y, rows, n, stride);
     }
@@ -342,6 +353,8 @@ static void ldlt_pass_back(const float *l, const float *y, float *x, uint32_t ro
         ldlt_pass_back_of(l, y, x, 3u, 3u, stride);
     } else if (rows == 5u && n == 5u) {
         ldlt_pass_back_of(l, y, x, 5u, 5u, stride);
+    } else if (rows == 6u && n == 6u) {
+        ldlt_pass_back_of(l, y, x, 6u, 6u, stride);
     } else {
         ldlt_pass_back_of(l, y, x, rows, n, stride);
     }

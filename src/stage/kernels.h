@@ -14,7 +14,8 @@ typedef struct tl_step {
     float inverse_sub;                          /* 1/s */
     float warm_scale;                           /* this sub-step over the one that the stored impulses come from */
     float bias_rate, mass_scale, impulse_scale; /* of soft contacts */
-    uint32_t rows;                              /* body rows in use, the still one included, rounded up to eight */
+    float spring;  /* N s a sub-step, m and kg of effective mass: of soft contacts at rest */
+    uint32_t rows; /* body rows in use, the still one included, rounded up to eight */
     int any_locks;
     int pushes;  /* something is deep enough, or tied by joints, to be pushed */
     int bounces; /* something has restitution */
@@ -39,6 +40,8 @@ typedef struct tl_kernels {
     tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */
     tl_kernel read_velocities, read_errors, apply_impulses, apply_pushes; /* linked joint groups */
     tl_kernel solve_linkages;                                             /* linkages */
+    tl_kernel begin_presses;                  /* presses: their rows, from the prepared groups; */
+    tl_kernel press_velocities, press_errors; /* what keeps contacts from closing and sliding; what parts them */
 } tl_kernels;
 
 /* Solves for the x of one linkage's joints in single floats. */
@@ -46,6 +49,10 @@ void tl_linkage_solve_one(const tl_header *h, const tl_linkage *l);
 /* Factors and solves, in single floats, what is left of the joints at the cuts of a linkage. */
 void tl_cuts_factor(const tl_header *h, const tl_linkage *l);
 void tl_cuts_solve(const tl_header *h, const tl_linkage *l);
+
+/* Factors the matrix of a press, and solves it for the right-hand sides in its place, in single floats. */
+void tl_press_factor(const tl_header *h, const tl_press *s);
+void tl_press_solve(const tl_header *h, const tl_press *s);
 
 extern const tl_kernels tl_kernels_scalar;
 #if defined(__SSE2__)

@@ -21,11 +21,6 @@ void tl_stage_joint_groups(tl_step *step);
 /* Finds the presses among the contacts in groups. O(awake bodies), and where some are much heavier than others
  * O(awake contacts). */
 void tl_stage_find_presses(tl_step *step);
-/* Their rows, from the prepared groups. */
-void tl_stage_begin_presses(tl_step *step);
-/* Velocities that keep pressed contacts from closing and sliding; displacements that part those which overlap. */
-void tl_stage_press_velocities(tl_step *step);
-void tl_stage_press_errors(tl_step *step);
 
 /* Marks the groups of linkages in which some joint was too far from its place for one push; returns whether there are
  * any. Those that share groups are marked together. */

@@ -1,7 +1,7 @@
 /* For each word of contact_alive the word, then the contacts that it says are there. A contact begins with its code:
  * how many points it has, colour, flags, what of the rest there is, and the signs of friction and twist. Then shapes,
- * motion, normal; friction and twist, if any is more than a sign; the words of its cache up to the last that is not 0;
- * its points, each with the id last.
+ * motion, normal; friction and twist, if any is more than a sign; its lift, if any; the words of its cache up to the
+ * last that is not 0; its points, each with the id last.
  *
  * Which contact has how many points and what of the rest is as good as random. A branch on it would be guessed wrong
  * every other time, and that cost more than all else here: so the most that a contact may have is copied, and stepped
@@ -12,12 +12,12 @@
 #include "base/bytes.h"
 
 /* Where the parts of a code are: count (3 bits), colour (7), flags (8), whether friction or twist are not 0 (1), words
- * of the cache (3), whether ids need 4 bytes and not 3 (1), signs (4). */
-enum { AT_COLOR = 3, AT_FLAGS = 10, AT_RUBS = 18, AT_CACHE = 19, AT_WIDE = 22, AT_SIGNS = 23 };
+ * of the cache (3), whether ids need 4 bytes and not 3 (1), signs (4), whether there is a lift (1). */
+enum { AT_COLOR = 3, AT_FLAGS = 10, AT_RUBS = 18, AT_CACHE = 19, AT_WIDE = 22, AT_SIGNS = 23, AT_LIFT = 27 };
 
 #define POINTS TL_MANIFOLD_POINTS
-#define POINT 32u                                         /* bytes of a point at most */
-#define MOST (4u + 8u + 16u + 16u + 16u + POINT * POINTS) /* bytes of a contact */
+#define POINT 32u                                              /* bytes of a point at most */
+#define MOST (4u + 8u + 16u + 16u + 4u + 16u + POINT * POINTS) /* bytes of a contact */
 static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 #define SIGNS 0x8000000080000000u
@@ -69,16 +69,16 @@ static unsigned char *put_contact(unsigned char *p, const slots *s, uint32_t con
     const tl_contact_meta *m = &s->metas[contact];
     const tl_contact_head *head = &s->heads[contact];
     const tl_pair_cache *cache = &s->caches[contact];
-    uint32_t count = m->count, cached = cache_words(cache), friction[4];
+    uint32_t count = m->count, cached = cache_words(cache), friction[5];
     uint32_t last = count - 1u; /* is taken again for points that are not there */
     const tl_contact_point_record *r = s->points[contact].p;
     const tl_contact_point_record *r1 = &r[least(1, last)], *r2 = &r[least(2, last)], *r3 = &r[least(3, last)];
     uint32_t wide = (turned(r->id) | turned(r1->id) | turned(r2->id) | turned(r3->id)) >> 24 != 0;
-    memcpy(friction, head->friction, 16); /* and the twist */
+    memcpy(friction, head->friction, 20); /* and the twist and the lift */
     uint64_t f = pair_of(friction), g = pair_of(friction + 2);
-    uint32_t rubs = ((f | g) & ~SIGNS) != 0;
+    uint32_t rubs = ((f | g) & ~SIGNS) != 0, lift = friction[4], lifted = lift != 0;
     p = tl_put_word(p, count | m->color << AT_COLOR | m->flags << AT_FLAGS | rubs << AT_RUBS | cached << AT_CACHE |
-                           wide << AT_WIDE | (signs_of(f) | signs_of(g) << 2) << AT_SIGNS);
+                           wide << AT_WIDE | (signs_of(f) | signs_of(g) << 2) << AT_SIGNS | lifted << AT_LIFT);
     if (s->few_shapes) {
         p = tl_put_word(p, m->shape_a | m->shape_b << 16);
     } else {
@@ -87,6 +87,8 @@ static unsigned char *put_contact(unsigned char *p, const slots *s, uint32_t con
     p = tl_put_word(p, m->motion);
     tl_put_words(p, head->normal, 7); /* and friction and twist */
     p += 12u + 16u * rubs;
+    tl_put_word(p, lift);
+    p += 4u * lifted;
     tl_put_words(p, cache->word, 4);
     p += 4u * cached;
     size_t point = 31u + wide;
@@ -132,6 +134,7 @@ static const unsigned char *get_contact(const unsigned char *p, const slots *s, 
     uint32_t code = tl_get_word(p), shape_a = tl_get_word(p + 4), shape_b = shape_a >> 16;
     uint32_t count = code & 7u, color = code >> AT_COLOR & 127u, flags = code >> AT_FLAGS & 255u;
     uint32_t rubs = code >> AT_RUBS & 1u, cached = code >> AT_CACHE & 7u, wide = code >> AT_WIDE & 1u;
+    uint32_t lifted = code >> AT_LIFT & 1u;
     if (count > POINTS || cached > 4u || !(flags & TL_CONTACT_ALIVE) || color > TL_COLORS) {
         return NULL;
     }
@@ -152,7 +155,9 @@ static const unsigned char *get_contact(const unsigned char *p, const slots *s, 
     tl_get_words(p + 4, s->heads[contact].normal, 3);
     get_friction(p + 16, s->heads[contact].friction, code, rubs);
     p += 16u + 16u * rubs;
-    uint32_t cache[4];
+    uint32_t cache[4], lift = tl_get_word(p) & (0u - lifted);
+    memcpy(&s->heads[contact].lift, &lift, 4);
+    p += 4u * lifted;
     tl_get_words(p, cache, 4);
     for (uint32_t i = 0; i < 4u; i++) {
         cache[i] &= FIRST_WORDS[cached][i];

@@ -19,6 +19,7 @@ static void set_softness(tl_step *step) {
     step->bias_rate = omega / a1;
     step->mass_scale = a2 * a3;
     step->impulse_scale = a3;
+    step->spring = h * omega * omega;
 }
 
 static void begin_step(tl_step *step, const talus_world *world, float dt) {
@@ -93,7 +94,7 @@ static void push_back(tl_step *step, const tl_kernels *k) {
         k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
         run_linkages(step, k, k->read_errors, k->apply_pushes);
-        tl_stage_press_errors(step);
+        k->press_errors(step, 0, h->presses);
         push_bodies(step, k);
     }
     step->again = 1;
@@ -133,7 +134,7 @@ static void run_substep(tl_step *step, const tl_kernels *k, uint32_t i, tl_watch
         step->before_move = 1;
         run_linked_velocities(step, k);
         step->before_move = 0;
-        tl_stage_press_velocities(step);
+        k->press_velocities(step, 0, h->presses);
         k->solve_contacts(step, 0, contacts);
     }
     if (step->any_locks) {
@@ -155,7 +156,7 @@ static void run_substep(tl_step *step, const tl_kernels *k, uint32_t i, tl_watch
         step->deferred = !first;
         k->relax_joints(step, 0, joints);
         run_linked_velocities(step, k);
-        tl_stage_press_velocities(step);
+        k->press_velocities(step, 0, h->presses);
         k->relax_contacts(step, 0, contacts);
     }
     step->deferred = 0;
@@ -173,13 +174,13 @@ static void solve(tl_step *step, tl_watch *w) {
     tl_stage_joint_groups(step);
     tl_stage_find_presses(step);
     k->prepare_contacts(step, 0, h->groups);
-    tl_stage_begin_presses(step);
+    k->begin_presses(step, 0, h->presses);
     uint32_t bouncing = 0, rolling = 0, pushed = 0;
     step->pushes = h->joint_groups > 0 || h->presses > 0;
     for (uint32_t i = 0; i < h->groups; i++) {
         bouncing += tl_group_pool(h)[i].bounces != 0;
         rolling |= tl_group_pool(h)[i].rolls;
-        pushed += tl_group_pool(h)[i].deep != 0;
+        pushed += tl_group_pool(h)[i].depth & TL_DEPTH_PUSHED;
     }
     step->pushes |= pushed > 0;
     step->bounces = bouncing > 0;

@@ -4,6 +4,7 @@
  * as heavy it needs R sweeps a contact, and until then the light ones give way. So where a body stands on one many
  * times lighter, the contacts from there on down that bear many times the weight of one of their bodies, as the
  * impulses of the last sub-step have it, are put into a system of their own. It is ordered as linkages are. */
+#include <stddef.h>
 #include <string.h>
 
 #include "stage/row/groups.h"
@@ -121,6 +122,14 @@ static void collect(finder *f) {
     }
 }
 
+/* Before their rows are filled in, pressed contacts are no more than where they are. */
+static void swap_places(tl_pressed *a, tl_pressed *b) {
+    unsigned char place[offsetof(tl_pressed, holds)];
+    memcpy(place, a, sizeof place);
+    memcpy(a, b, sizeof place);
+    memcpy(b, place, sizeof place);
+}
+
 /* The contacts that hang together with the one at `first`, which become the order from there on; f->pressed numbers
  * their bodies from 1. Returns how many there are. */
 static uint32_t gather(finder *f, uint32_t first, uint32_t *ends) {
@@ -134,9 +143,7 @@ static uint32_t gather(finder *f, uint32_t first, uint32_t *ends) {
                 f->pressed[row] = ++numbers;
                 for (uint32_t j = first + count; j < h->pressed; j++) {
                     if (pool[j].row[0] == row || pool[j].row[1] == row) {
-                        tl_pressed next = pool[j];
-                        pool[j] = pool[first + count];
-                        pool[first + count++] = next;
+                        swap_places(&pool[j], &pool[first + count++]);
                     }
                 }
             }
@@ -153,8 +160,7 @@ static uint32_t end_of(const finder *f, uint32_t row) {
 /* What was met last is taken first, as in linkages. */
 static void reverse(tl_pressed *p, uint32_t count) {
     for (uint32_t k = 0; k < count / 2u; k++) {
-        tl_pressed swap = p[k];
-        p[k] = p[count - 1u - k], p[count - 1u - k] = swap;
+        swap_places(&p[k], &p[count - 1u - k]);
     }
 }
 

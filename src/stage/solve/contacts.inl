@@ -98,17 +98,22 @@ typedef struct grip {
     tl_f8 s1, s2;
 } grip;
 
+/* m/s: at which what is `way` from where it was gripped is drawn back, if it is held. */
+static inline tl_f8 drawn_back(const tl_step *step, tl_f8 held, tl_f8 way) {
+    tl_f8 reach = tl_f8_set1(TL_GRIP_REACH);
+    tl_f8 rate = tl_f8_mul(held, tl_f8_set1(TL_GRIP_SHARE * step->inverse_sub));
+    return tl_f8_mul(rate, tl_f8_max(tl_f8_min(way, reach), tl_f8_neg(reach)));
+}
+
 static inline grip grip_of(const tl_step *step, const tl_contact_group *g, const pair_motion *m, v8 n) {
     v8 t1 = v8_load(g->tangent[0]), t2 = v8_cross(n, t1);
     v8 ja1 = v8_load(g->ja1[0]), jb1 = v8_load(g->jb1[0]), ja2 = v8_load(g->ja2[0]), jb2 = v8_load(g->jb2[0]);
-    tl_f8 reach = tl_f8_set1(TL_GRIP_REACH), back = tl_f8_neg(reach);
-    tl_f8 rate = tl_f8_mul(tl_f8_load(g->held), tl_f8_set1(TL_GRIP_SHARE * step->inverse_sub));
+    tl_f8 held = tl_f8_load(g->held);
     tl_f8 turn1 = tl_f8_sub(v8_dot(jb1, m->db), v8_dot(ja1, m->da));
     tl_f8 turn2 = tl_f8_sub(v8_dot(jb2, m->db), v8_dot(ja2, m->da));
     tl_f8 way1 = tl_f8_add(tl_f8_add(tl_f8_load(g->slid[0]), v8_dot(t1, m->d)), turn1);
     tl_f8 way2 = tl_f8_add(tl_f8_add(tl_f8_load(g->slid[1]), v8_dot(t2, m->d)), turn2);
-    return (grip){tl_f8_mul(rate, tl_f8_max(tl_f8_min(way1, reach), back)),
-                  tl_f8_mul(rate, tl_f8_max(tl_f8_min(way2, reach), back))};
+    return (grip){drawn_back(step, held, way1), drawn_back(step, held, way2)};
 }
 
 static inline void solve_tangent(tl_contact_group *g, pair_velocity *p, grip back, v8 n, tl_f8 pressure) {
@@ -159,21 +164,13 @@ static void solve_rolling(const tl_step *step, tl_contact_group *g, pair_velocit
     apply_spin(p, ja2, jb2, tl_f8_sub(new2, old2));
 }
 
-/* The lanes of a group that are in a press: they are hard, for there is no need of a spring. */
-static inline tl_m8 pressed_lanes(const tl_contact_group *g) {
-    float lanes[TL_LANES];
-    for (uint32_t k = 0; k < TL_LANES; k++) {
-        lanes[k] = g->pressed >> k & 1u ? 1.0f : 0.0f;
-    }
-    return tl_f8_gt(tl_f8_loadu(lanes), tl_f8_zero());
-}
-
 static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_velocity *p, const pair_motion *m, v8 n,
-                                 int with_bias, int pressed) {
+                                 int with_bias, int pressed, int lifted) {
     tl_f8 zero = tl_f8_zero(), one = tl_f8_set1(1.0f), inverse_h = tl_f8_set1(step->inverse_sub);
     tl_f8 rate = tl_f8_set1(step->bias_rate), push = tl_f8_set1(-step->h->settings.push_speed);
     tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
-    tl_m8 hard = pressed ? pressed_lanes(g) : tl_m8_zero();
+    tl_f8 lift = lifted ? tl_f8_load(g->lift) : zero;
+    tl_m8 hard = tl_m8_from_bits(pressed ? g->pressed : 0u); /* they have no need of a spring */
     for (uint32_t i = 0; i < g->points; i++) {
         tl_contact_lane_point *c = &g->point[i];
         v8 ja = v8_load(c->ja[0]), jb = v8_load(c->jb[0]);
@@ -183,6 +180,7 @@ static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_
         tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_load(c->mass);
         tl_f8 old = tl_f8_load(c->impulse), now = old;
         if (with_bias) {
+            gap = lifted ? tl_f8_sub(gap, lift) : gap;
             bias = tl_f8_select(apart, bias, tl_f8_max(tl_f8_mul(gap, rate), push));
             mass = tl_f8_mul(mass, tl_f8_select(apart, one, soft_mass));
             now = tl_f8_sub(now, tl_f8_mul(tl_f8_select(apart, zero, soft_impulse), old));
@@ -199,12 +197,12 @@ static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_
 
 /* Before the move friction is what the last sub-step found, as part of the warm start: worked out against the spring's
  * pressure it would hold what the spring moves, and what rests would creep. */
-static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int pressed) {
+static inline void solve_contact_group(const tl_step *step, tl_contact_group *g, int pressed, int lifted) {
     pair_velocity p;
     load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     v8 n = v8_load(g->normal[0]);
     pair_motion moved = load_motion(step, g, n);
-    solve_normals(step, g, &p, &moved, n, 1, pressed);
+    solve_normals(step, g, &p, &moved, n, 1, pressed, lifted);
     if (g->rolls && step->first_substep) { /* there is no warm start of it */
         solve_rolling(step, g, &p, n, pressure_of(g));
     }
@@ -221,7 +219,7 @@ static inline void relax_contact_group(const tl_step *step, tl_contact_group *g)
     tl_f8 pressure = pressure_of(g);
     solve_tangent(g, &p, back, n, pressure);
     solve_twist(g, &p, pressure);
-    solve_normals(step, g, &p, &moved, n, 0, 0);
+    solve_normals(step, g, &p, &moved, n, 0, 0, 0);
     pressure = pressure_of(g);
     solve_tangent(g, &p, back, n, pressure);
     solve_twist(g, &p, pressure);
@@ -235,9 +233,11 @@ static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         tl_contact_group *g = &tl_group_pool(step->h)[i];
         if (g->pressed) {
-            solve_contact_group(step, g, 1);
+            solve_contact_group(step, g, 1, 1);
+        } else if (g->depth & TL_DEPTH_LIFTED) {
+            solve_contact_group(step, g, 0, 1);
         } else {
-            solve_contact_group(step, g, 0);
+            solve_contact_group(step, g, 0, 0);
         }
     }
 }
@@ -255,7 +255,7 @@ static void push_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     tl_f8 most = tl_f8_set1(step->h->settings.push_speed * step->sub);
     for (uint32_t k = first; k < last; k++) {
         const tl_contact_group *g = &tl_group_pool(step->h)[k];
-        if (!g->deep) {
+        if (!(g->depth & TL_DEPTH_PUSHED)) {
             continue;
         }
         pair_velocity p;

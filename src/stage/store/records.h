@@ -87,7 +87,7 @@ typedef struct tl_contact_head {
     float normal[3];   /* in the mass frame of body a, from a to b */
     float friction[3]; /* N s, impulse of friction on b, world axes */
     float twist;       /* N m s about the normal */
-    float reserved;
+    float lift;        /* m: as how much deeper what has long borne a load counts */
 } tl_contact_head;
 
 typedef struct tl_contact_point_record {

@@ -38,13 +38,16 @@ typedef struct tl_contact_lane_point {
     float peak[TL_LANES];     /* N s, the largest impulse of the step */
 } tl_contact_lane_point;
 
+/* contact_group.depth: some point is so deep that it is pushed; some manifold has a lift. */
+enum { TL_DEPTH_PUSHED = 1, TL_DEPTH_LIFTED = 2 };
+
 typedef struct tl_contact_group {
     uint32_t a[TL_LANES], b[TL_LANES]; /* body rows */
     uint32_t contact[TL_LANES];
     uint32_t lanes, points;     /* how many are in use */
     uint32_t bounces, rolls;    /* whether any lane has restitution, rolling resistance */
     uint32_t heard;             /* whether any lane has events to tell */
-    uint32_t deep;              /* whether any point is deep enough to be pushed */
+    uint32_t depth;             /* TL_DEPTH_* */
     uint32_t struck;            /* whether any lane bounced in the last sweep */
     uint32_t pressed;           /* bits of lanes that are in a press */
     float normal[3][TL_LANES];  /* from a to b */
@@ -55,6 +58,7 @@ typedef struct tl_contact_group {
     float twist_mass[TL_LANES], lever[TL_LANES];       /* m: of the friction about the normal */
     float slid[2][TL_LANES]; /* m: how far b has slid on a since the manifold was made, when the step began */
     float held[TL_LANES];    /* 1: it did not slide in the last step; else 0 */
+    float lift[TL_LANES];    /* m: as how much deeper than they are the points count */
     float static_friction[TL_LANES], dynamic_friction[TL_LANES], restitution[TL_LANES], rolling[TL_LANES];
     float tangent_impulse[2][TL_LANES], twist_impulse[TL_LANES], rolling_impulse[2][TL_LANES];
     float roll_mass[TL_LANES];
@@ -141,9 +145,8 @@ typedef struct tl_linkage {
 } tl_linkage;
 
 #define TL_MOST_PRESSED 128u
-#define TL_PRESS_ROWS 6u
 
-/* A contact that is solved at once with others: the rows of its points, then of both tangents. */
+/* A contact that is solved at once with others; a lane is a row: of its points, then of both tangents. */
 typedef struct tl_pressed {
     uint32_t place;          /* its contact group times eight, plus its lane */
     uint32_t row[2], points; /* body rows */
@@ -151,11 +154,16 @@ typedef struct tl_pressed {
     uint32_t slides;         /* friction had to give way in this solve */
     uint32_t barred;         /* bits of rows that would have pulled at once */
     uint32_t reserved;
-    float n[3][3];                                           /* the normal and the tangents */
-    float j[2][TL_PRESS_ROWS][3];                            /* whitened angular Jacobians of a and b */
-    float impulse[TL_PRESS_ROWS], speed[TL_PRESS_ROWS];      /* before a solve */
-    float mass[2], turns[2];                                 /* of a and b: inverse mass, 1 if impulses turn it */
-    float matrix[TL_PRESS_ROWS * (TL_PRESS_ROWS + 1u) / 2u]; /* the lower half by rows */
+    float mass[2], turns[2]; /* of a and b: inverse mass, 1 if impulses turn it */
+    float held, hold, slide; /* as in the group: 1 if it did not slide, static and dynamic friction */
+    float padding;           /* what follows is aligned */
+    float n[3][TL_LANES];    /* directions of the rows, */
+    float j[2][3][TL_LANES]; /* whitened angular Jacobians of a and b */
+    float gap[TL_LANES];     /* m: separation of points, what tangents have slid, when the step began */
+    float bias[TL_LANES];    /* m/s: what the speeds are to be met beside */
+    float impulse[TL_LANES]; /* N s */
+    float from[TL_LANES];    /* N s, where a round began, */
+    float speed[TL_LANES];   /* m/s, and what it had to meet */
 } tl_pressed;
 
 /* Contacts that hang together through bodies that can be moved. */

@@ -7,7 +7,7 @@
 #include "talus/world.h"
 
 #define TL_BLOCK_MAGIC 0x53554c54u /* "TLUS" */
-#define TL_BLOCK_VERSION 2u
+#define TL_BLOCK_VERSION 3u
 #define TL_UNIT 64u /* bytes: columns start at multiples of it, offsets are counted in it */
 
 typedef enum tl_column_id {
