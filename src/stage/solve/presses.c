@@ -61,8 +61,10 @@ static void fill_rows(const tl_header *h, tl_pressed *p) {
     }
     take_lane(p->j[0][p->points], s.g->ja1[0], s.lane);
     take_lane(p->j[1][p->points], s.g->jb1[0], s.lane);
-    take_lane(p->j[0][p->points + 1u], s.g->ja2[0], s.lane);
-    take_lane(p->j[1][p->points + 1u], s.g->jb2[0], s.lane);
+    if (p->rows > p->points + 1u) {
+        take_lane(p->j[0][p->points + 1u], s.g->ja2[0], s.lane);
+        take_lane(p->j[1][p->points + 1u], s.g->jb2[0], s.lane);
+    }
     for (uint32_t side = 0; side < 2u; side++) {
         p->mass[side] = tl_row_velocity(h)[p->row[side]].f[6];
         p->turns[side] = tl_row_velocity(h)[p->row[side]].f[7];
@@ -76,7 +78,7 @@ static float share_of(const tl_pressed *p, uint32_t r, uint32_t s, const tl_pres
 }
 
 static void fill_matrix(tl_pressed *p) {
-    for (uint32_t i = 0; i < p->points + 2u; i++) {
+    for (uint32_t i = 0; i < p->rows; i++) {
         for (uint32_t j = 0; j <= i; j++) {
             p->matrix[ldlt_at(i, j)] = share_of(p, i, 0, p, j, 0) + share_of(p, i, 1u, p, j, 1u);
         }
@@ -102,7 +104,7 @@ static int holds(const tl_pressed *p, uint32_t row) { return (int)(p->holds >> r
 
 /* A row that does not hold stands for itself alone. */
 static void fill_diagonal(const tl_pressed *p, float soft, float *d) {
-    for (uint32_t i = 0; i < p->points + 2u; i++) {
+    for (uint32_t i = 0; i < p->rows; i++) {
         for (uint32_t j = 0; j < i; j++) {
             d[ldlt_at(i, j)] = holds(p, i) && holds(p, j) ? p->matrix[ldlt_at(i, j)] : 0.0f;
         }
@@ -111,8 +113,8 @@ static void fill_diagonal(const tl_pressed *p, float soft, float *d) {
 }
 
 static void fill_block(const tl_pressed *p, const tl_pressed *q, uint32_t shares, float *v) {
-    for (uint32_t r = 0; r < p->points + 2u; r++) {
-        for (uint32_t c = 0; c < q->points + 2u; c++, v++) {
+    for (uint32_t r = 0; r < p->rows; r++) {
+        for (uint32_t c = 0; c < q->rows; c++, v++) {
             *v = 0.0f;
             for (uint32_t i = 0; i < 4u && holds(p, r) && holds(q, c); i++) {
                 *v += shares >> i & 1u ? share_of(p, r, i / 2u, q, c, i % 2u) : 0.0f;
@@ -211,12 +213,12 @@ static float speed_to_meet(const tl_step *step, const tl_pressed *p, uint32_t ro
 static uint32_t look_at(const tl_step *step, tl_pressed *p, int first) {
     spot s = spot_of(step->h, p);
     uint32_t found = 0;
-    for (uint32_t row = 0; row < p->points + 2u; row++) {
+    for (uint32_t row = 0; row < p->rows; row++) {
         p->impulse[row] = *impulse_of(s, p, row);
         p->speed[row] = speed_to_meet(step, p, row);
     }
     if (first) {
-        float x = p->impulse[p->points], y = p->impulse[p->points + 1u];
+        float x = p->impulse[p->points], y = p->rows > p->points + 1u ? p->impulse[p->points + 1u] : 0.0f;
         float most = NEAR_SLIDE * s.g->dynamic_friction[s.lane] * pressure_of(s, p);
         p->slides = !(x * x + y * y < most * most);
         p->barred = 0;
@@ -224,7 +226,7 @@ static uint32_t look_at(const tl_step *step, tl_pressed *p, int first) {
     for (uint32_t row = 0; row < p->points; row++) {
         found |= (uint32_t)(p->impulse[row] > 0.0f || p->speed[row] < -CLOSING) << row;
     }
-    return (found & ~p->barred) | (p->slides ? 0u : 3u << p->points);
+    return (found & ~p->barred) | (p->slides ? 0u : (1u << p->rows) - (1u << p->points));
 }
 
 /* Whether a round has anything to do: rows that hold are not met, and, where the last round did what it wanted, others
@@ -236,7 +238,7 @@ static int look(const tl_step *step, tl_press *s, int first, int wanted) {
         uint32_t now = look_at(step, p, first);
         changed |= now != p->holds;
         p->holds = now;
-        for (uint32_t row = 0; row < p->points + 2u; row++) {
+        for (uint32_t row = 0; row < p->rows; row++) {
             moves |= holds(p, row) && !(tl_abs(p->speed[row]) < AT_REST);
         }
     }
@@ -279,7 +281,7 @@ static void go(const tl_step *step, const tl_press *s, float share) {
 static void go_back(const tl_step *step, const tl_press *s, float share) {
     for (uint32_t k = 0; k < s->count; k++) {
         tl_pressed *p = &tl_pressed_pool(step->h)[s->first + k];
-        for (uint32_t row = 0; row < p->points + 2u; row++) {
+        for (uint32_t row = 0; row < p->rows; row++) {
             float change = *impulse_of(spot_of(step->h, p), p, row) - p->impulse[row];
             add_impulse(step->h, p, row, (share - 1.0f) * change);
         }
@@ -296,7 +298,9 @@ static int slide(const tl_step *step, tl_pressed *p) {
     }
     float share = s.g->dynamic_friction[s.lane] * pressure / length - 1.0f;
     add_impulse(step->h, p, p->points, x * share);
-    add_impulse(step->h, p, p->points + 1u, y * share);
+    if (p->rows > p->points + 1u) {
+        add_impulse(step->h, p, p->points + 1u, y * share);
+    }
     p->slides = 1u;
     return 1;
 }
@@ -325,7 +329,7 @@ static float best_share(const tl_step *step, const tl_press *s) {
     float slope = 0.0f, bend = 0.0f;
     for (uint32_t k = 0; k < s->count; k++) {
         const tl_pressed *p = &tl_pressed_pool(step->h)[s->first + k];
-        for (uint32_t row = 0; row < p->points + 2u; row++) {
+        for (uint32_t row = 0; row < p->rows; row++) {
             float change = *impulse_of(spot_of(step->h, p), p, row) - p->impulse[row];
             slope += change * p->speed[row];
             bend += change * (speed_to_meet(step, p, row) - p->speed[row]);
