@@ -275,9 +275,9 @@ static void prepare_contacts(const tl_step *step, uint32_t first, uint32_t last)
         prepare_materials(step, g);
         tl_f8_load_rows(tl_heads(step->h)->normal, g->contact, r);
         v8 n = q8_rotate(c.qa, v8_of(r[0], r[1], r[2])), ra, rb;
-        n.x = g->plane == 1u ? tl_f8_zero() : n.x;
-        n.y = g->plane == 2u ? tl_f8_zero() : n.y;
-        n.z = g->plane == 3u ? tl_f8_zero() : n.z;
+        if (g->plane) {
+            *(g->plane == 1u ? &n.x : g->plane == 2u ? &n.y : &n.z) = tl_f8_zero();
+        }
         v8_store(g->normal[0], n);
         tl_f8 lever;
         prepare_points(step, g, &c, n, &ra, &rb, &lever);
@@ -314,20 +314,20 @@ static void store_contacts(const tl_step *step, uint32_t first, uint32_t last) {
         tl_f8_storeu(friction[0], f.x);
         tl_f8_storeu(friction[1], f.y);
         tl_f8_storeu(friction[2], f.z);
+        uint32_t records = g->plane ? 0u : g->points; /* that are points themselves */
         for (uint32_t k = 0; k < g->lanes; k++) {
             uint32_t c = g->contact[k];
             for (uint32_t d = 0; d < 3u; d++) {
                 heads[c].friction[d] = tl_is_finite(friction[d][k]) ? friction[d][k] : 0.0f;
             }
             heads[c].twist = tl_is_finite(g->twist_impulse[k]) ? g->twist_impulse[k] : 0.0f;
-            if (g->plane) {
-                share_impulses(step->h, g, k);
-                continue;
-            }
-            for (uint32_t p = 0; p < g->points; p++) {
+            for (uint32_t p = 0; p < records; p++) {
                 float impulse = g->point[p].impulse[k];
                 points[c].p[p].impulse = tl_is_finite(impulse) ? impulse : 0.0f;
             }
+        }
+        for (uint32_t k = 0; g->plane && k < g->lanes; k++) {
+            share_impulses(step->h, g, k);
         }
     }
 }

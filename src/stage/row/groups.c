@@ -17,15 +17,13 @@ static uint32_t contact_key(const tl_contact_meta *m, const uint32_t *plane) {
 }
 
 /* Sorts the touching contacts by key into contact_order; counting sort. Returns their number. */
-static uint32_t order_contacts(const tl_step *step) {
-    tl_header *h = step->h;
+static inline uint32_t order_by_key(tl_header *h, const uint32_t *planes) {
     uint32_t start[KEYS + 1u], total = 0, most = 0;
     const tl_contact_meta *metas = tl_contacts(h);
     const uint32_t *awake = tl_awake_contact(h);
     if (h->awake_contacts == 0) {
         return 0;
     }
-    const uint32_t *planes = step->planar ? tl_contact_plane(h) : NULL;
     memset(start, 0, ((TL_COLORS + 1u) * (planes ? PLANAR_KINDS : KINDS) + 1u) * sizeof *start);
     for (uint32_t k = 0; k < h->awake_contacts; k++) {
         const tl_contact_meta *m = &metas[awake[k]];
@@ -50,6 +48,9 @@ static uint32_t order_contacts(const tl_step *step) {
     }
     return total;
 }
+
+static uint32_t order_contacts(tl_header *h) { return order_by_key(h, NULL); }
+static uint32_t order_planar_contacts(tl_header *h) { return order_by_key(h, tl_contact_plane(h)); }
 
 /* Whether a row of a moving body is in the group already. */
 static int holds_row(const uint32_t *a, const uint32_t *b, uint32_t lanes, uint32_t row) {
@@ -80,7 +81,7 @@ void tl_stage_contact_groups(tl_step *step) {
     tl_row8 *moves = tl_row_moved(h);
     tl_contact_planes(step);
     const uint32_t *planes = step->planar ? tl_contact_plane(h) : NULL;
-    uint32_t count = order_contacts(step), color = TL_NONE, colors = 0, dropped = 0;
+    uint32_t count = planes ? order_planar_contacts(h) : order_contacts(h), color = TL_NONE, colors = 0, dropped = 0;
     tl_contact_group *g = NULL;
     h->groups = 0;
     for (uint32_t k = 0; k < count; k++) {
