@@ -15,14 +15,18 @@ typedef enum talus_body_type {
     TALUS_BODY_TYPE_COUNT
 } talus_body_type;
 
-/* World axes along and about which a body does not move. */
+/* World axes along and about which a body does not move. Of a body that is locked to a plane, three degrees of freedom
+ * are solved instead of six where it touches what is locked to the same plane, stands still or is moved along it. */
 enum {
     TALUS_LOCK_LINEAR_X = 1,
     TALUS_LOCK_LINEAR_Y = 2,
     TALUS_LOCK_LINEAR_Z = 4,
     TALUS_LOCK_ANGULAR_X = 8,
     TALUS_LOCK_ANGULAR_Y = 16,
-    TALUS_LOCK_ANGULAR_Z = 32
+    TALUS_LOCK_ANGULAR_Z = 32,
+    TALUS_LOCK_PLANE_X = 1 | 16 | 32, /* to the plane across x; it turns about x */
+    TALUS_LOCK_PLANE_Y = 2 | 8 | 32,
+    TALUS_LOCK_PLANE_Z = 4 | 8 | 16
 };
 
 typedef struct talus_body_def {

@@ -28,7 +28,7 @@ typedef struct talus_frame_island {
     talus_body body; /* the one that most contacts and joints hold on to */
     uint32_t held;   /* how many those are */
     uint32_t bodies, contacts, joints;
-    uint32_t rows; /* constraint rows: of a contact its points and three of friction; of a joint its own */
+    uint32_t rows; /* constraint rows: of a contact its points and 3 of friction, in a plane 1; of a joint its own */
     uint64_t ticks;
 } talus_frame_island;
 

@@ -147,6 +147,8 @@ typedef struct talus_counters {
     uint32_t joints_apart;     /* solved one by one, for the set they are in was too large or too much tied to itself */
     uint32_t contacts_pressed; /* between bodies much lighter than what they bear: solved at once */
     uint32_t contacts_left;    /* such ones for which there was no room there */
+    uint32_t bodies_planar;    /* awake and locked to a plane: three degrees of freedom are left to them, */
+    uint32_t contacts_planar;  /* and contacts in which these are solved, as nothing in them goes across the plane */
     uint32_t islands, islands_slept, islands_woken;
     uint32_t bodies_slept, bodies_woken; /* with those islands */
     uint32_t sleep_searched;             /* 1: bodies were slow for long enough to look for islands that may sleep */

@@ -17,6 +17,7 @@ typedef struct tl_step {
     float spring;  /* N s a sub-step, m and kg of effective mass: of soft contacts at rest */
     uint32_t rows; /* body rows in use, the still one included, rounded up to eight */
     int any_locks;
+    int planar;  /* some contacts have a plane */
     int pushes;  /* something is deep enough, or tied by joints, to be pushed */
     int bounces; /* something has restitution */
     int first_substep;

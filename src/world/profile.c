@@ -98,7 +98,7 @@ static uint32_t fetch_contacts(const tl_header *h, uint32_t first, ends *out) {
         const tl_contact_group *g = &tl_group_pool(h)[first + i];
         memcpy(out[i].a, g->a, sizeof g->a);
         memcpy(out[i].b, g->b, sizeof g->b);
-        out[i].lanes = g->lanes, out[i].rows = g->points + 3u;
+        out[i].lanes = g->lanes, out[i].rows = g->points + (g->plane ? 1u : 3u);
     }
     return count;
 }

@@ -201,8 +201,69 @@ static void build_sensors(talus_world *world) {
     }
 }
 
+/* Bodies locked to planes across x, y and z, on the ground, on a plank that is moved along it, some tied. */
+static void build_planes(talus_world *world) {
+    golden_floor(world);
+    for (uint32_t i = 0; i < 60; i++) {
+        uint32_t axis = i % 3u, place = i / 3u;
+        float along = -1.4f + 0.7f * (float)(place % 5u), apart = 6.0f * (float)axis;
+        talus_body_def def = talus_body_def_default();
+        talus_body b;
+        def.type = i < 3u ? TALUS_KINEMATIC : TALUS_DYNAMIC;
+        def.pose.position =
+            golden_vec(axis == 2u ? along : 0.1f * (float)axis, 0.4f + 0.9f * (float)(place / 5u), apart);
+        def.pose.position.z += axis == 2u ? 0.0f : along;
+        def.locks =
+            i < 3u ? 0u : (uint32_t)TALUS_LOCK_LINEAR_X << axis | (7u ^ 1u << axis) * (uint32_t)TALUS_LOCK_ANGULAR_X;
+        if (axis == 1u) { /* seen from above: what falls is held */
+            def.linear_velocity = golden_vec(-0.5f * along, 0.0f, golden_range(-1.0f, 1.0f));
+        }
+        golden_check(talus_body_create(world, &def, &b), "body");
+        talus_shape_def shape = talus_shape_def_default();
+        shape.geometry.half = i % 4u ? golden_any(golden_vec(0.2f, 0.2f, 0.2f), golden_vec(0.4f, 0.4f, 0.4f))
+                                     : golden_vec(0.3f, 0.3f, 0.3f);
+        if (place % 4u == 3u) {
+            shape.geometry.type = TALUS_SPHERE, shape.geometry.radius = golden_range(0.2f, 0.35f);
+            shape.material.rolling_resistance = 0.01f;
+        }
+        shape.material.restitution = place % 5u == 4u ? 0.5f : 0.0f;
+        shape.density = place % 7u == 6u ? 20000.0f : 1000.0f;
+        shape.events = i % 2u;
+        golden_shape(world, b, &shape);
+        if (place % 5u == 1u && place > 5u) { /* to the body beside it */
+            talus_joint_def joint = talus_joint_def_default();
+            talus_joint_make_ball(&joint);
+            joint.a.index = b.index - 3u, joint.a.generation = 1u, joint.b = b;
+            joint.frame_a.position = axis == 2u ? golden_vec(0.35f, 0.0f, 0.0f) : golden_vec(0.0f, 0.0f, 0.35f);
+            joint.frame_b.position = axis == 2u ? golden_vec(-0.35f, 0.0f, 0.0f) : golden_vec(0.0f, 0.0f, -0.35f);
+            golden_joint(world, &joint);
+        }
+    }
+}
+
+/* Some are let go for a while. */
+static void lock_and_let_go(talus_world *world, uint32_t step) {
+    if (step % 40u == 39u) {
+        talus_body body = {4u + 5u * (step / 40u), 1u};
+        uint32_t axis = (body.index - 1u) % 3u, plane = 7u ^ 1u << axis;
+        uint32_t locks = (uint32_t)TALUS_LOCK_LINEAR_X << axis | plane * (uint32_t)TALUS_LOCK_ANGULAR_X;
+        golden_check(talus_body_set_locks(world, body, step % 80u == 39u ? 0u : locks), "locks");
+    }
+    for (uint32_t k = 0; k < 3u; k++) {
+        talus_body plank = {1u + k, 1u};
+        float speed = step / 60u % 2u ? -0.4f : 0.4f;
+        talus_vec3 v = k == 2u ? golden_vec(speed, 0.0f, 0.0f) : golden_vec(0.0f, 0.0f, speed);
+        golden_check(talus_body_set_velocity(world, plank, v, golden_vec(0.0f, 0.0f, 0.0f)), "velocity");
+    }
+}
+
 const golden_scene golden_more_scenes[] = {
-    {"chain", 240, build_chain, 0},   {"bridge", 240, build_bridge, 0}, {"ragdolls", 240, build_ragdolls, 0},
-    {"joints", 240, build_joints, 0}, {"flight", 240, build_flight, 0}, {"sensors", 200, build_sensors, 0},
+    {"chain", 240, build_chain, 0},
+    {"bridge", 240, build_bridge, 0},
+    {"ragdolls", 240, build_ragdolls, 0},
+    {"joints", 240, build_joints, 0},
+    {"flight", 240, build_flight, 0},
+    {"sensors", 200, build_sensors, 0},
+    {"planes", 240, build_planes, lock_and_let_go},
 };
 const unsigned golden_more_scene_count = sizeof golden_more_scenes / sizeof *golden_more_scenes;

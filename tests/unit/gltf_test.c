@@ -117,6 +117,63 @@ static void reads_joints(void **state) {
     gltf_scene_free(&s);
 }
 
+/* A body whose node is joined to one of the world by a description of a joint. */
+static gltf_scene joined_to_world(const char *motion, const char *nodes, const char *joint) {
+    char text[1600];
+    gltf_scene s;
+    gltf_error error;
+    snprintf(text, sizeof text,
+             "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],"
+             "\"extensionsUsed\":[\"KHR_implicit_shapes\",\"" RIGID "\"],"
+             "\"extensions\":{\"KHR_implicit_shapes\":{\"shapes\":[{\"type\":\"sphere\",\"sphere\":{\"radius\":1}}]},"
+             "\"" RIGID "\":{\"physicsJoints\":[{%s}]}},"
+             "\"nodes\":[{%s,\"extensions\":{\"" RIGID
+             "\":{\"motion\":{%s},\"collider\":{\"geometry\":{\"shape\":0}}}}},"
+             "{%s,\"extensions\":{\"" RIGID "\":{\"joint\":{\"connectedNode\":0,\"joint\":0}}}}]}",
+             joint, nodes, motion, nodes);
+    gltf_status status = load(text, &s, &error);
+    if (status != GLTF_OK) {
+        print_error("%s\n", error.text);
+    }
+    assert_int_equal(status, GLTF_OK);
+    assert_int_equal(s.body_count, 1);
+    return s;
+}
+
+/* What leaves a body the motion in a plane across an axis of the world is a lock, and nothing else is. */
+static void locks_to_planes(void **state) {
+    (void)state;
+    const char *z = "\"limits\":[{\"linearAxes\":[2],\"min\":0,\"max\":0},{\"angularAxes\":[0,1],\"min\":0,\"max\":0}]";
+    const char *x = "\"limits\":[{\"linearAxes\":[0],\"min\":0,\"max\":0},{\"angularAxes\":[1,2],\"min\":0,\"max\":0}]";
+    const char *straight = "\"translation\":[1,2,3]", *to_z = "\"rotation\":[0,-0.70710678,0,0.70710678]",
+               *askew = "\"rotation\":[0,0.6,0,0.8]";
+    const struct {
+        const char *motion, *nodes, *joint;
+        uint32_t locks;
+    } cases[] = {
+        {"", straight, z, TALUS_LOCK_PLANE_Z},
+        {"", straight, x, TALUS_LOCK_PLANE_X},
+        {"", to_z, x, TALUS_LOCK_PLANE_Z},
+        {"", askew, x, 0},
+        {"\"isKinematic\":true", straight, z, 0},
+        {"", straight, "\"limits\":[{\"linearAxes\":[2],\"min\":0,\"max\":0}]", 0},
+        {"", straight,
+         "\"limits\":[{\"linearAxes\":[2],\"min\":0,\"max\":0},{\"angularAxes\":[0,2],\"min\":0,\"max\":0}]", 0},
+        {"", straight,
+         "\"limits\":[{\"linearAxes\":[2],\"min\":0.1,\"max\":0.1},{\"angularAxes\":[0,1],\"min\":0,\"max\":0}]", 0},
+        {"", straight,
+         "\"limits\":[{\"linearAxes\":[2],\"min\":0,\"max\":0},{\"angularAxes\":[0,1],\"min\":0,\"max\":0}],"
+         "\"drives\":[{\"type\":\"angular\",\"mode\":\"force\",\"axis\":2,\"velocityTarget\":1,\"damping\":1}]",
+         0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        gltf_scene s = joined_to_world(cases[i].motion, cases[i].nodes, cases[i].joint);
+        assert_int_equal(s.bodies[0].locks, cases[i].locks);
+        assert_int_equal(s.joint_count, cases[i].locks ? 0 : 1);
+        gltf_scene_free(&s);
+    }
+}
+
 static void reads_limits(void **state) {
     (void)state;
     const char *cone = "{\"angularAxes\":[1,2],\"max\":0.5}";
@@ -485,13 +542,13 @@ static void makes_own_scenes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_all_parts),     cmocka_unit_test(reads_joints),
-        cmocka_unit_test(reads_limits),        cmocka_unit_test(reads_filters),
-        cmocka_unit_test(reads_shapes),        cmocka_unit_test(reads_nodes),
-        cmocka_unit_test(reads_sheared_hulls), cmocka_unit_test(reads_glb),
-        cmocka_unit_test(reads_base64),        cmocka_unit_test(builds_worlds),
-        cmocka_unit_test(refuses_flat_hulls),  cmocka_unit_test(writes_animations),
-        cmocka_unit_test(makes_own_scenes),
+        cmocka_unit_test(reads_all_parts),   cmocka_unit_test(reads_joints),
+        cmocka_unit_test(locks_to_planes),   cmocka_unit_test(reads_limits),
+        cmocka_unit_test(reads_filters),     cmocka_unit_test(reads_shapes),
+        cmocka_unit_test(reads_nodes),       cmocka_unit_test(reads_sheared_hulls),
+        cmocka_unit_test(reads_glb),         cmocka_unit_test(reads_base64),
+        cmocka_unit_test(builds_worlds),     cmocka_unit_test(refuses_flat_hulls),
+        cmocka_unit_test(writes_animations), cmocka_unit_test(makes_own_scenes),
     };
     return cmocka_run_group_tests(tests, make_base, free_base);
 }

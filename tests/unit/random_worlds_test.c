@@ -117,6 +117,13 @@ static talus_shape_def any_shape(const scene *s) {
     return def;
 }
 
+/* None, any, or those of a plane. */
+static uint32_t any_locks(void) {
+    uint32_t axis = below(3), plane = (uint32_t)TALUS_LOCK_LINEAR_X << axis | (7u ^ 1u << axis) * TALUS_LOCK_ANGULAR_X;
+    uint32_t any = below(64), kind = below(8);
+    return kind < 1 ? 0u : kind < 5 ? plane : any;
+}
+
 static void add_body(scene *s) {
     talus_body_def def = talus_body_def_default();
     uint32_t kind = below(10);
@@ -128,7 +135,7 @@ static void add_body(scene *s) {
     def.linear_damping = below(4) ? 0.0f : across(1e-3f, 1e3f);
     def.angular_damping = below(4) ? 0.0f : across(1e-3f, 1e3f);
     def.gravity_scale = below(6) ? 1.0f : between(-2.0f, 2.0f);
-    def.locks = below(8) ? 0u : below(64);
+    def.locks = any_locks();
     def.can_sleep = below(8) != 0;
     def.starts_asleep = below(8) == 0;
     talus_body body;
@@ -271,7 +278,7 @@ static void meddle(scene *s) {
         (void)talus_body_apply_angular_impulse(w, body, f);
         break;
     case 10:
-        (void)talus_body_set_locks(w, body, below(64));
+        (void)talus_body_set_locks(w, body, any_locks());
         break;
     case 11:
         (void)talus_body_wake(w, body);

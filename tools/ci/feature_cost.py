@@ -16,6 +16,7 @@ FEATURES = {
     "rolling resistance": (r"\broll|rolls|rolling", ()),
     "kinematic bodies": (r"kinematic|\bdynamic\b|(->|\.)moves\b", ()),
     "locked axes": (r"\block|_locks", ()),
+    "planar bodies": (r"planar|PLANAR|in_plane|tl_plane_|contact_plane|row_planes|->plane\b|\bplanes (\?|=)|plane != ", ()),
     "sensors": (r"sensor|SENSOR|senses", ()),
     "events": (r"event|EVENT|\bhit_", ()),
     "sleep": (r"sleep|slept|asleep", ()),

@@ -287,6 +287,7 @@ static int add_body(const gltf_scene *scene, gltf_world *out, uint32_t index, gl
     def.type = body->kinematic ? TALUS_KINEMATIC : TALUS_DYNAMIC;
     def.pose = body->pose;
     def.gravity_scale = body->gravity_factor;
+    def.locks = body->locks;
     def.user_data = body->node;
     return check(error, talus_body_create(&out->world, &def, &out->bodies[index]), "its body", body->node);
 }

@@ -212,6 +212,44 @@ void gltf_read_joint(gltf_loader *loader, const gltf_at *kind, talus_joint_def *
     gltf_list_close(&drives);
 }
 
+/* TALUS_LOCK_* of a body that a joint to the world leaves nothing but the motion in a plane across a world axis; else
+ * 0.
+ */
+static uint32_t plane_of(const gltf_loader *loader, int node, int other, const gltf_joint *joint) {
+    const double near = 1e-6; /* m, rad */
+    const talus_joint_def *def = &joint->def;
+    const gltf_place *place[] = {&loader->place[node], &loader->place[other]};
+    uint32_t k = 0, linear = 0, angular = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        const talus_axis *axis[] = {&def->linear[i], &def->angular[i]};
+        for (int j = 0; j < 2; j++) {
+            int locked = axis[j]->mode == TALUS_AXIS_LOCKED && axis[j]->lower == 0;
+            if (!locked && axis[j]->mode != TALUS_AXIS_FREE) {
+                return 0;
+            }
+            *(j ? &angular : &linear) |= (uint32_t)locked << i;
+        }
+        if (def->linear_drive[i].enabled || def->angular_drive[i].enabled) {
+            return 0;
+        }
+        k = linear == 1u << i ? i : k;
+    }
+    if (linear != 1u << k || angular != (linear ^ 7u) || def->distance_enabled || def->cone_axis >= 0 ||
+        joint->static_a != GLTF_NONE || joint->static_b != GLTF_NONE) {
+        return 0;
+    }
+    const gltf_double3 unit = gltf_d3(k == 0, k == 1, k == 2);
+    const gltf_double3 n = gltf_rotate(place[0]->rotation, unit), m = gltf_rotate(place[1]->rotation, unit);
+    double apart = gltf_dot3(n, gltf_sub3(place[1]->position, place[0]->position));
+    const double along[] = {fabs(n.x), fabs(n.y), fabs(n.z)};
+    for (uint32_t i = 0; i < 3; i++) {
+        if (along[i] > 1 - near * near && gltf_dot3(n, m) > 1 - near * near && fabs(apart) < near) {
+            return (uint32_t)TALUS_LOCK_LINEAR_X << i | (7u ^ 1u << i) * (uint32_t)TALUS_LOCK_ANGULAR_X;
+        }
+    }
+    return 0;
+}
+
 /* The static collider that an end without a body hangs on. */
 static uint32_t anchor(gltf_loader *loader, int node, uint32_t body) {
     uint32_t collider = body == GLTF_NONE ? loader->collider[node] : GLTF_NONE;
@@ -256,6 +294,12 @@ static void add_joint(gltf_loader *loader, int index, const gltf_at *link) {
     }
     joint.static_a = anchor(loader, index, joint.body_a);
     joint.static_b = anchor(loader, other, joint.body_b);
+    uint32_t locks = plane_of(loader, index, other, &joint);
+    uint32_t held = joint.body_a == GLTF_NONE ? joint.body_b : joint.body_a;
+    if (locks && (joint.body_a == GLTF_NONE || joint.body_b == GLTF_NONE) && !scene->bodies[held].kinematic) {
+        scene->bodies[held].locks |= locks;
+        return;
+    }
     joint.def.frame_a = gltf_pose_in_body(loader, index, joint.body_a);
     joint.def.frame_b = gltf_pose_in_body(loader, other, joint.body_b);
     joint.def.collide_connected = (uint8_t)collide;

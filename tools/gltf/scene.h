@@ -8,6 +8,7 @@
 #define TALUS_GLTF_SCENE_H
 
 #include "gltf/error.h"
+#include "talus/body.h"
 #include "talus/joint.h"
 #include "talus/shape.h"
 
@@ -39,6 +40,7 @@ typedef struct gltf_body {
     talus_vec3 linear_velocity;  /* m/s, of the centre of mass, world axes */
     talus_vec3 angular_velocity; /* rad/s, world axes */
     float gravity_factor;
+    uint32_t locks; /* TALUS_LOCK_*: by joints to the world that leave it the motion in a plane */
     uint8_t kinematic;
     uint8_t has_mass, has_center, has_inertia;
     float mass;                  /* kg; 0 is infinite */

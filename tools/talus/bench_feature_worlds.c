@@ -30,16 +30,21 @@ static int add_box(talus_world *world, float x, float y, float z, float half) {
 }
 
 /* Dynamic bodies of a shape in a row, asleep. */
-static int add_sleepers(talus_world *world, uint32_t count, const talus_shape_def *shape) {
+static int add_locked_sleepers(talus_world *world, uint32_t count, const talus_shape_def *shape, uint32_t locks) {
     int status = 0;
     for (uint32_t i = 0; i < count && status == 0; i++) {
         talus_body body;
         status = add_body(world, TALUS_DYNAMIC, 1000.0f + 3.0f * (float)i, 1.0f, 0.0f, shape, &body);
-        if (status == 0 && talus_body_sleep(world, body) != TALUS_OK) {
+        if (status == 0 &&
+            (talus_body_set_locks(world, body, locks) != TALUS_OK || talus_body_sleep(world, body) != TALUS_OK)) {
             status = -1;
         }
     }
     return status;
+}
+
+static int add_sleepers(talus_world *world, uint32_t count, const talus_shape_def *shape) {
+    return add_locked_sleepers(world, count, shape, 0);
 }
 
 /* --- scenes --- */
@@ -94,6 +99,11 @@ static int add_events(talus_world *world, uint32_t count) {
     talus_shape_def box = talus_shape_def_default();
     box.events = 1;
     return add_sleepers(world, count, &box);
+}
+
+static int add_planar(talus_world *world, uint32_t count) {
+    talus_shape_def box = talus_shape_def_default();
+    return add_locked_sleepers(world, count, &box, TALUS_LOCK_PLANE_Z);
 }
 
 static int add_fixed(talus_world *world, talus_body_type type, uint32_t count, int sensor) {
@@ -155,6 +165,7 @@ const feature features[] = {{"nothing", "the same world twice: what the machine 
                             {"linkages", "5 chains of 20 hinged bodies, asleep", NULL, add_linkages, 0},
                             {"restitution", "100 boxes that would bounce, asleep", NULL, add_bouncing, 0},
                             {"rolling", "100 balls that resist rolling, asleep", NULL, add_rolling, 0},
+                            {"planar", "100 boxes locked to a plane, asleep", NULL, add_planar, 0},
                             {"events", "100 boxes that report touches, asleep", NULL, add_events, 0},
                             {"sensors", "100 sensors that hold nothing", NULL, add_sensors, 0},
                             {"kinematics", "100 kinematic boxes that stand still", NULL, add_kinematics, 0},

@@ -359,7 +359,7 @@ static const char *const bench_page[] = {
     "    --scene NAME     of this scene only; may be given more than once: stack, pyramid, masses, cards, arch,\n"
     "                     chain, bridge, pile, ragdolls, tumbler\n"
     "    --feature NAME   this feature only; may be given more than once: nothing, joints, linkages, restitution,\n"
-    "                     rolling, events, sensors, kinematics, statics, sleepers, sleep, room, profiler\n"
+    "                     rolling, planar, events, sensors, kinematics, statics, sleepers, sleep, room, profiler\n"
     "    --quick          little of all, in seconds: whether it works, not what it costs\n"
     "    --json           print one line of JSON: of each case the least, the median and the spread between\n"
     "                     quartiles of the runs (ns a query, ms a step), and the errors (relative, m)\n"

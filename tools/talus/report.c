@@ -70,6 +70,11 @@ static void print_skipped(const run_result *r) {
     printf("\nafter the last step: %" PRIu32 " bodies awake, %" PRIu32 " asleep, %" PRIu32 " islands, %" PRIu32
            " contacts touch with %" PRIu32 " points\n",
            c->awake_bodies, c->sleeping_bodies, c->islands, c->contacts_touching, c->contact_points);
+    if (c->bodies_planar > 0) {
+        printf("locked to a plane: %" PRIu32 " of the bodies awake, three degrees of freedom solved in %" PRIu32
+               " contacts\n",
+               c->bodies_planar, c->contacts_planar);
+    }
     if (c->lane_groups > 0) {
         printf("solver: %" PRIu32 " groups of eight in %" PRIu32 " colours, %.1f%% of the lanes in use\n",
                c->lane_groups, c->colors, percent(c->lanes_used, 8 * (uint64_t)c->lane_groups));
@@ -131,6 +136,8 @@ static void add_counters(gltf_text *out, const run_result *r) {
     add_count(out, "sleeping_bodies", c->sleeping_bodies);
     add_count(out, "contacts_touching", c->contacts_touching);
     add_count(out, "contact_points", c->contact_points);
+    add_count(out, "bodies_planar", c->bodies_planar);
+    add_count(out, "contacts_planar", c->contacts_planar);
     add_count(out, "islands", c->islands);
     add_count(out, "colors", c->colors);
     add_count(out, "lane_groups", c->lane_groups);

@@ -161,6 +161,27 @@ static void make_pile(author *a) {
     }
 }
 
+/* Each body is tied to the world by a joint that leaves it the plane. */
+static void make_plane(author *a) {
+    parts_random random = {17};
+    int material = author_material(a, 0.5, 0, NULL);
+    parts_ground(a, 20, material);
+    author_part wall = author_box(a, 0.4, 30, 2);
+    author_static(a, wall, author_at(-4.2, 15, 0), material);
+    author_static(a, wall, author_at(4.2, 15, 0), material);
+    for (uint32_t i = 0; i < 200; i++) {
+        double x = parts_uniform(&random, 0.4, 0.9), y = parts_uniform(&random, 0.4, 0.9);
+        author_part part = i % 3 ? author_box(a, x, y, 1) : author_sphere(a, x / 2);
+        gltf_double3 at = parts_layer(i, 7, 1, 1.1, 1);
+        at.x += parts_uniform(&random, -0.05, 0.05);
+        gltf_double4 turn = author_rotation(0, 0, 1, parts_uniform(&random, 0, PARTS_PI));
+        int body = author_add_body(a, part, parts_pose(at, turn), material, NULL);
+        author_joint(
+            a, AUTHOR_WORLD, body, parts_pose(at, unturned),
+            PARTS_LIMITS("{\"linearAxes\":[2],\"min\":0,\"max\":0},{\"angularAxes\":[0,1],\"min\":0,\"max\":0}"));
+    }
+}
+
 static void make_heap(author *a) {
     parts_random random = {11};
     int material = author_material(a, 0.5, 0.1, NULL);
@@ -299,7 +320,7 @@ typedef struct scene_maker {
     uint32_t steps; /* of 1/60 s */
 } scene_maker;
 
-#define SCENES 16
+#define SCENES 17
 
 static const scene_info infos[SCENES] = {
     {"arch", "15 wedges that hold each other up; they should stay"},
@@ -310,6 +331,7 @@ static const scene_info infos[SCENES] = {
     {"heap", "1000 boxes and balls dropped into a bin"},
     {"masses", "columns of five boxes, the top one up to 1000 times as heavy"},
     {"pile", "400 rocks (convex hulls) dropped into a bin"},
+    {"plane", "200 boxes and balls that joints to the world keep in a plane, dropped between two walls"},
     {"pyramid", "210 boxes as a wall that should stay as it is"},
     {"ragdolls", "24 figures of eleven capsules fall on stairs"},
     {"shapes", "boxes, balls, capsules, cones, cylinders, tapered ones and rocks, 240 together"},
@@ -321,10 +343,10 @@ static const scene_info infos[SCENES] = {
 };
 
 static const scene_maker makers[SCENES] = {
-    {make_arch, 600},      {make_bridge, 600},   {make_cards, 600},   {make_chain, 600},
-    {make_dominoes, 1000}, {make_heap, 600},     {make_masses, 600},  {make_pile, 500},
-    {make_pyramid, 300},   {make_ragdolls, 400}, {make_shapes, 400},  {make_showcase, 900},
-    {make_stack, 600},     {make_tower, 400},    {make_tumbler, 600}, {make_wheel, 400},
+    {make_arch, 600},     {make_bridge, 600}, {make_cards, 600},    {make_chain, 600}, {make_dominoes, 1000},
+    {make_heap, 600},     {make_masses, 600}, {make_pile, 500},     {make_plane, 600}, {make_pyramid, 300},
+    {make_ragdolls, 400}, {make_shapes, 400}, {make_showcase, 900}, {make_stack, 600}, {make_tower, 400},
+    {make_tumbler, 600},  {make_wheel, 400},
 };
 
 const scene_info *scenes_list(size_t *count) {

@@ -63,7 +63,8 @@ static void tell_begin(tl_header *h, uint32_t contact) {
 
 static void tell_hit(tl_header *h, const tl_contact_group *g, uint32_t lane, float speed, uint32_t point) {
     const tl_contact_meta *l = &tl_contacts(h)[g->contact[lane]];
-    const tl_contact_point_record *r = &tl_points(h)[g->contact[lane]].p[point];
+    uint32_t record = g->plane ? tl_plane_first(tl_contact_plane(h)[g->contact[lane]], point) : point;
+    const tl_contact_point_record *r = &tl_points(h)[g->contact[lane]].p[record];
     talus_pose body = tl_row_pose_of(&tl_row_pose(h)[g->a[lane]]);
     talus_vec3 at = tl_pose_point(&body, tl_v(r->a[0], r->a[1], r->a[2]));
     talus_vec3 normal = tl_v(g->normal[0][lane], g->normal[1][lane], g->normal[2][lane]);

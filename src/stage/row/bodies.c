@@ -46,8 +46,13 @@ static void locked_frame(const tl_header *h, uint32_t body, uint32_t locks, talu
         }
     }
     talus_mat3 block = {{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
-    float values[3];
-    tl_principal_axes(&block, frame, values);
+    float values[3] = {m[0][0], m[1][1], m[2][2]};
+    uint32_t free_axes = ~locks >> 3 & 7u;
+    if (free_axes & (free_axes - 1u)) {
+        tl_principal_axes(&block, frame, values);
+    } else { /* about one axis of the world */
+        *frame = tl_quat_identity();
+    }
     s->x = values[0] > 1e-6f * most ? 1.0f / sqrtf(values[0]) : 0.0f;
     s->y = values[1] > 1e-6f * most ? 1.0f / sqrtf(values[1]) : 0.0f;
     s->z = values[2] > 1e-6f * most ? 1.0f / sqrtf(values[2]) : 0.0f;

@@ -3,6 +3,7 @@
  *
  * Friction acts at the manifold's centre, as a vector in the tangent plane and a torque about the normal: three rows a
  * manifold instead of two a point. */
+#include <string.h>
 
 /* m: overlap beyond is more than the solver's spring should be left with. */
 #define PUSH_DEPTH 4e-3f
@@ -21,7 +22,12 @@
 #define LIFT_SHARE 0.95f
 #define LIFT_RATE 0.5f   /* 1/s */
 #define LEAST_LIFT 1e-7f /* m: less is none */
-#define LIFT_POINTS 3u   /* that a face rests on; what has fewer may roll */
+#define LIFT_POINTS 3u   /* that a face rests on, in a plane one fewer; what has fewer may roll */
+
+/* A cube on its face has four points of a quarter of its mass in space, but two of two fifths in a plane: their springs
+ * are made stiffer, so that it sinks in as far. As many springs as in space would be twice as stiff, and shake piles.
+ */
+#define PLANAR_STIFF 1.25f
 
 typedef struct contact_bodies {
     v8 xa, xb; /* centres of mass */
@@ -61,6 +67,19 @@ static inline tl_f8 angular_mass(const contact_bodies *c, v8 ja, v8 jb) {
     return tl_f8_add(tl_f8_mul(c->ta, v8_dot(ja, ja)), tl_f8_mul(c->tb, v8_dot(jb, jb)));
 }
 
+/* In a plane: across the normal within it; the second tangent then is the axis. */
+static inline v8 tangent_in_plane(v8 n, uint32_t plane) {
+    tl_f8 zero = tl_f8_zero();
+    switch (plane) {
+    case 1:
+        return v8_of(zero, tl_f8_neg(n.z), n.y);
+    case 2:
+        return v8_of(n.z, zero, tl_f8_neg(n.x));
+    default:
+        return v8_of(tl_f8_neg(n.y), n.x, zero);
+    }
+}
+
 /* A unit vector across n. */
 static inline v8 tangent_of(v8 n) {
     tl_m8 flat = tl_f8_lt(tl_f8_abs(n.x), tl_f8_set1(0.57735f));
@@ -70,16 +89,43 @@ static inline v8 tangent_of(v8 n) {
     return v8_scale(t, inverse_or_zero(l));
 }
 
+/* The records that the points of a group are made of, and what they bear. */
+typedef struct point_records {
+    uint32_t record[4][TL_LANES]; /* the first one of each point: the contact times four, plus its place */
+    float impulse[4][TL_LANES];   /* N s: of all of a point's */
+    float count[TL_LANES];        /* points */
+} point_records;
+
+static void find_records(const tl_header *h, tl_contact_group *g, point_records *out) {
+    memset(out->impulse, 0, sizeof out->impulse);
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        uint32_t c = g->contact[k], w = k < g->lanes ? tl_contact_plane(h)[c] : 0u;
+        out->count[k] = (float)tl_plane_points(w);
+        g->stiff[k] = k < g->lanes && tl_contacts(h)[c].count > tl_plane_points(w) ? PLANAR_STIFF : 1.0f;
+        for (uint32_t p = 0; p < 4u; p++) {
+            out->record[p][k] = 4u * c + tl_plane_first(w, p);
+        }
+        for (uint32_t r = 0; k < g->lanes && r < tl_contacts(h)[c].count; r++) {
+            out->impulse[tl_plane_point_of(w, r)][k] += tl_points(h)[c].p[r].impulse;
+        }
+    }
+}
+
 /* The points' rows, and the weighted centre of the manifold on both bodies. */
 static void prepare_points(const tl_step *step, tl_contact_group *g, const contact_bodies *c, v8 n, v8 *center_a,
                            v8 *center_b, tl_f8 *lever) {
     const float *records = tl_points(step->h)->p[0].a;
     const tl_contact_meta *metas = tl_contacts(step->h);
+    point_records in_plane;
     float count[TL_LANES];
     for (uint32_t k = 0; k < TL_LANES; k++) {
         count[k] = k < g->lanes ? (float)metas[g->contact[k]].count : 0.0f;
     }
-    tl_f8 counts = tl_f8_loadu(count), zero = tl_f8_zero(), one = tl_f8_set1(1.0f), sum = zero, ways = zero;
+    if (g->plane) {
+        find_records(step->h, g, &in_plane);
+    }
+    tl_f8 counts = tl_f8_loadu(g->plane ? in_plane.count : count), zero = tl_f8_zero(), one = tl_f8_set1(1.0f),
+          sum = zero, ways = zero;
     tl_f8 fade = tl_f8_set1(1.0f / tl_max(step->h->settings.speculative_margin, 1e-6f));
     v8 sum_a = v8_zero(), sum_b = v8_zero(), arms[4];
     tl_m8 deep = tl_m8_zero();
@@ -87,7 +133,12 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
     for (uint32_t p = 0; p < g->points; p++) {
         tl_contact_lane_point *out = &g->point[p];
         tl_f8 r[8];
-        tl_f8_load_rows_stride(records + 8u * p, 32u, g->contact, r);
+        if (g->plane) {
+            tl_f8_load_rows_stride(records, 8u, in_plane.record[p], r);
+            r[6] = tl_f8_loadu(in_plane.impulse[p]);
+        } else {
+            tl_f8_load_rows_stride(records + 8u * p, 32u, g->contact, r);
+        }
         tl_m8 used = tl_f8_gt(counts, tl_f8_set1((float)p));
         v8 ra = q8_rotate(c->qa, v8_of(r[0], r[1], r[2])), rb = q8_rotate(c->qb, v8_of(r[3], r[4], r[5]));
         tl_f8 gap = v8_dot(n, v8_sub(v8_add(v8_sub(c->xb, c->xa), rb), ra));
@@ -165,7 +216,9 @@ static void prepare_grip(tl_contact_group *g, v8 slid, v8 t1, v8 t2) {
  * manifold there. `lift` is that of the last step; it is never more than what the whole load asks for. */
 static void prepare_lift(const tl_step *step, tl_contact_group *g, tl_f8 lift) {
     tl_f8 zero = tl_f8_zero(), spring = tl_f8_set1(step->spring), all = zero, least = tl_f8_set1(1.0f); /* m */
-    if (g->points < LIFT_POINTS) {
+    spring = g->plane ? tl_f8_mul(spring, tl_f8_load(g->stiff)) : spring;
+    uint32_t face = LIFT_POINTS - (g->plane != 0);
+    if (g->points < face) {
         tl_f8_store(g->lift, zero);
         return;
     }
@@ -176,7 +229,7 @@ static void prepare_lift(const tl_step *step, tl_contact_group *g, tl_f8 lift) {
         all = tl_f8_add(all, k);
     }
     all = tl_f8_mul(pressure_of(g), inverse_or_zero(all));
-    tl_m8 rests = tl_f8_gt(tl_f8_mul(tl_f8_load(g->point[LIFT_POINTS - 1u].mass), tl_f8_load(g->held)), zero);
+    tl_m8 rests = tl_f8_gt(tl_f8_mul(tl_f8_load(g->point[face - 1u].mass), tl_f8_load(g->held)), zero);
     tl_f8 wanted = tl_f8_mul(tl_f8_sub(least, tl_f8_set1(LIFT_DEPTH)), tl_f8_set1(LIFT_SHARE));
     wanted = tl_f8_and_mask(rests, tl_f8_max(tl_f8_min(wanted, tl_f8_set1(PUSH_DEPTH)), zero));
     lift = tl_f8_mad(lift, tl_f8_set1(LIFT_RATE * step->dt), tl_f8_sub(wanted, lift));
@@ -188,7 +241,7 @@ static void prepare_lift(const tl_step *step, tl_contact_group *g, tl_f8 lift) {
 
 static void prepare_friction(const tl_step *step, tl_contact_group *g, const contact_bodies *c, v8 n, v8 ra, v8 rb) {
     tl_f8 r[8], warm = tl_f8_set1(step->warm_scale), mass = tl_f8_add(c->ma, c->mb);
-    v8 t1 = tangent_of(n), t2 = v8_cross(n, t1);
+    v8 t1 = g->plane ? tangent_in_plane(n, g->plane) : tangent_of(n), t2 = v8_cross(n, t1);
     v8 ja1 = k8_mul(&c->ka, v8_cross(ra, t1)), jb1 = k8_mul(&c->kb, v8_cross(rb, t1));
     v8 ja2 = k8_mul(&c->ka, v8_cross(ra, t2)), jb2 = k8_mul(&c->kb, v8_cross(rb, t2));
     v8 jan = k8_mul(&c->ka, n), jbn = k8_mul(&c->kb, n);
@@ -215,6 +268,13 @@ static void prepare_friction(const tl_step *step, tl_contact_group *g, const con
     tl_f8_store(g->twist_impulse, tl_f8_mul(r[6], warm));
     tl_f8_store(g->rolling_impulse[0], tl_f8_zero());
     tl_f8_store(g->rolling_impulse[1], tl_f8_zero());
+    if (g->plane) { /* nothing goes across it */
+        tl_f8_store(g->k12, tl_f8_zero());
+        tl_f8_store(g->k22, tl_f8_zero());
+        tl_f8_store(g->slid[1], tl_f8_zero());
+        tl_f8_store(g->tangent_impulse[1], tl_f8_zero());
+        tl_f8_store(g->twist_impulse, tl_f8_zero());
+    }
     if (g->rolls) {
         v8 ka1 = k8_mul(&c->ka, t1), kb1 = k8_mul(&c->kb, t1), ka2 = k8_mul(&c->ka, t2), kb2 = k8_mul(&c->kb, t2);
         tl_f8 k1 = angular_mass(c, ka1, kb1), k2 = angular_mass(c, ka2, kb2);
@@ -253,6 +313,9 @@ static void prepare_contacts(const tl_step *step, uint32_t first, uint32_t last)
         prepare_materials(step, g);
         tl_f8_load_rows(tl_heads(step->h)->normal, g->contact, r);
         v8 n = q8_rotate(c.qa, v8_of(r[0], r[1], r[2])), ra, rb;
+        if (g->plane) {
+            *(g->plane == 1u ? &n.x : g->plane == 2u ? &n.y : &n.z) = tl_f8_zero();
+        }
         v8_store(g->normal[0], n);
         tl_f8 lever;
         prepare_points(step, g, &c, n, &ra, &rb, &lever);
@@ -261,6 +324,20 @@ static void prepare_contacts(const tl_step *step, uint32_t first, uint32_t last)
         if (g->heard) {
             prepare_approach(step, g, n);
         }
+    }
+}
+
+/* What a point bears is shared out evenly to the records that it is made of. */
+static void share_impulses(tl_header *h, const tl_contact_group *g, uint32_t lane) {
+    uint32_t c = g->contact[lane], w = tl_contact_plane(h)[c], count = tl_contacts(h)[c].count;
+    uint32_t sharers[4] = {0, 0, 0, 0};
+    for (uint32_t r = 0; r < count; r++) {
+        sharers[tl_plane_point_of(w, r)]++;
+    }
+    for (uint32_t r = 0; r < count; r++) {
+        uint32_t p = tl_plane_point_of(w, r);
+        float impulse = g->point[p].impulse[lane] / (float)sharers[p];
+        tl_points(h)[c].p[r].impulse = tl_is_finite(impulse) ? impulse : 0.0f;
     }
 }
 
@@ -275,6 +352,7 @@ static void store_contacts(const tl_step *step, uint32_t first, uint32_t last) {
         tl_f8_storeu(friction[0], f.x);
         tl_f8_storeu(friction[1], f.y);
         tl_f8_storeu(friction[2], f.z);
+        uint32_t records = g->plane ? 0u : g->points; /* that are points themselves */
         for (uint32_t k = 0; k < g->lanes; k++) {
             uint32_t c = g->contact[k];
             for (uint32_t d = 0; d < 3u; d++) {
@@ -282,10 +360,13 @@ static void store_contacts(const tl_step *step, uint32_t first, uint32_t last) {
             }
             heads[c].lift = g->lift[k];
             heads[c].twist = tl_is_finite(g->twist_impulse[k]) ? g->twist_impulse[k] : 0.0f;
-            for (uint32_t p = 0; p < g->points; p++) {
+            for (uint32_t p = 0; p < records; p++) {
                 float impulse = g->point[p].impulse[k];
                 points[c].p[p].impulse = tl_is_finite(impulse) ? impulse : 0.0f;
             }
+        }
+        for (uint32_t k = 0; g->plane && k < g->lanes; k++) {
+            share_impulses(step->h, g, k);
         }
     }
 }

@@ -6,24 +6,29 @@
 
 #include "stage/row/groups.h"
 
-/* Order: by colour, and within it by how many points there are, so that groups are of a kind. */
-#define KEYS ((TL_COLORS + 1u) * 4u)
+/* Order: by colour, and within it by plane and by how many points there are, so that groups are of a kind. */
+#define KINDS 4u         /* of a colour */
+#define PLANAR_KINDS 16u /* where there are planes */
+#define KEYS ((TL_COLORS + 1u) * PLANAR_KINDS)
 
-static uint32_t contact_key(const tl_contact_meta *m) { return m->color * 4u + (4u - m->count); }
+static uint32_t contact_key(const tl_contact_meta *m, const uint32_t *plane) {
+    return plane ? m->color * PLANAR_KINDS + tl_plane_of(*plane) * 4u + (4u - tl_plane_points(*plane))
+                 : m->color * KINDS + (4u - m->count);
+}
 
 /* Sorts the touching contacts by key into contact_order; counting sort. Returns their number. */
-static uint32_t order_contacts(tl_header *h) {
+static inline uint32_t order_by_key(tl_header *h, const uint32_t *planes) {
     uint32_t start[KEYS + 1u], total = 0, most = 0;
     const tl_contact_meta *metas = tl_contacts(h);
     const uint32_t *awake = tl_awake_contact(h);
     if (h->awake_contacts == 0) {
         return 0;
     }
-    memset(start, 0, sizeof start);
+    memset(start, 0, ((TL_COLORS + 1u) * (planes ? PLANAR_KINDS : KINDS) + 1u) * sizeof *start);
     for (uint32_t k = 0; k < h->awake_contacts; k++) {
         const tl_contact_meta *m = &metas[awake[k]];
         if (m->flags & TL_CONTACT_COLORED) {
-            uint32_t key = contact_key(m);
+            uint32_t key = contact_key(m, planes ? &planes[awake[k]] : NULL);
             start[key]++;
             most = key > most ? key : most;
             h->counters.contact_points += m->count;
@@ -38,11 +43,14 @@ static uint32_t order_contacts(tl_header *h) {
     for (uint32_t k = 0; k < h->awake_contacts; k++) {
         const tl_contact_meta *m = &metas[awake[k]];
         if (m->flags & TL_CONTACT_COLORED) {
-            order[start[contact_key(m)]++] = awake[k];
+            order[start[contact_key(m, planes ? &planes[awake[k]] : NULL)]++] = awake[k];
         }
     }
     return total;
 }
+
+static uint32_t order_contacts(tl_header *h) { return order_by_key(h, NULL); }
+static uint32_t order_planar_contacts(tl_header *h) { return order_by_key(h, tl_contact_plane(h)); }
 
 /* Whether a row of a moving body is in the group already. */
 static int holds_row(const uint32_t *a, const uint32_t *b, uint32_t lanes, uint32_t row) {
@@ -62,7 +70,7 @@ static tl_contact_group *open_group(tl_header *h) {
     memset(g->a, 0, sizeof g->a);
     memset(g->b, 0, sizeof g->b);
     memset(g->contact, 0, sizeof g->contact);
-    g->lanes = g->points = g->pressed = 0;
+    g->lanes = g->points = g->pressed = g->plane = 0;
     return g;
 }
 
@@ -71,17 +79,20 @@ void tl_stage_contact_groups(tl_step *step) {
     const tl_contact_meta *metas = tl_contacts(h);
     const uint32_t *rows = tl_body_row(h);
     tl_row8 *moves = tl_row_moved(h);
-    uint32_t count = order_contacts(h), color = TL_NONE, colors = 0, dropped = 0;
+    tl_contact_planes(step);
+    const uint32_t *planes = step->planar ? tl_contact_plane(h) : NULL;
+    uint32_t count = planes ? order_planar_contacts(h) : order_contacts(h), color = TL_NONE, colors = 0, dropped = 0;
     tl_contact_group *g = NULL;
     h->groups = 0;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t c = tl_contact_order(h)[k];
         const tl_contact_meta *m = &metas[c];
         uint32_t a = rows[m->body_a], b = rows[m->body_b];
+        uint32_t plane = planes ? tl_plane_of(planes[c]) : 0u, points = planes ? tl_plane_points(planes[c]) : m->count;
         int shared =
             g && m->color == TL_COLORS && (holds_row(g->a, g->b, g->lanes, a) || holds_row(g->a, g->b, g->lanes, b));
         colors += m->color != color;
-        if (!g || m->color != color || g->lanes == TL_LANES || shared) {
+        if (!g || m->color != color || g->lanes == TL_LANES || shared || g->plane != plane) {
             g = open_group(h);
             color = m->color;
         }
@@ -92,7 +103,8 @@ void tl_stage_contact_groups(tl_step *step) {
         g->a[g->lanes] = a;
         g->b[g->lanes] = b;
         g->contact[g->lanes++] = c;
-        g->points = m->count > g->points ? m->count : g->points;
+        g->points = points > g->points ? points : g->points;
+        g->plane = plane;
         moves[a].f[7] = moves[b].f[7] = 1.0f;
     }
     h->counters.contacts_touching = count;

@@ -4,6 +4,10 @@
 
 #include "stage/stages.h"
 
+/* Finds the contacts whose bodies are locked to one plane: fills contact_plane and sets step->planar if there may be
+ * any. O(awake bodies + awake contacts) where some body is locked, else O(1). */
+void tl_contact_planes(tl_step *step);
+
 /* Whether two joints have the same rows and so may stand in one group. */
 int tl_joints_alike(const tl_joint_record *a, const tl_joint_record *b);
 

@@ -117,12 +117,14 @@ static void collect(finder *f) {
             memset(p, 0, sizeof *p);
             p->place = i * TL_LANES + k;
             p->row[0] = g->a[k], p->row[1] = g->b[k];
-            p->points = tl_contacts(h)[g->contact[k]].count;
+            p->points =
+                g->plane ? tl_plane_points(tl_contact_plane(h)[g->contact[k]]) : tl_contacts(h)[g->contact[k]].count;
+            p->rows = p->points + (g->plane ? 1u : 2u);
         }
     }
 }
 
-/* Before their rows are filled in, pressed contacts are no more than where they are. */
+/* Before their rows are filled in, pressed contacts are no more than where they are and how many rows there will be. */
 static void swap_places(tl_pressed *a, tl_pressed *b) {
     unsigned char place[offsetof(tl_pressed, holds)];
     memcpy(place, a, sizeof place);
@@ -186,11 +188,11 @@ static void make_presses(finder *f) {
         for (uint32_t k = 0; k < count; k++) {
             const tl_pressed *p = &tl_pressed_pool(h)[first + k];
             node[k].end[0] = end_of(f, p->row[0]), node[k].end[1] = end_of(f, p->row[1]);
-            node[k].rows = p->points + 2u;
+            node[k].rows = p->rows;
         }
         uint32_t used = tl_block_plan(node, count, ends, tl_press_blocks(h), blocks, room, scratch, &size);
-        if (used == TL_BLOCK_FREE || size > h->capacity[TL_COUNT_PRESSVALUE] - values ||
-            is_too_unlike(h, tl_pressed_pool(h) + first, count)) {
+        uint32_t left = h->capacity[TL_COUNT_PRESSVALUE] - values; /* the last values are read eight at a time */
+        if (used == TL_BLOCK_FREE || size + TL_LANES > left || is_too_unlike(h, tl_pressed_pool(h) + first, count)) {
             h->counters.contacts_left += count;
             continue;
         }

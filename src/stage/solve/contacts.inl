@@ -229,10 +229,14 @@ static inline void relax_contact_group(const tl_step *step, tl_contact_group *g)
     store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
 }
 
+#include "stage/solve/planar.inl"
+
 static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         tl_contact_group *g = &tl_group_pool(step->h)[i];
-        if (g->pressed) {
+        if (g->plane) {
+            solve_in_plane(step, g);
+        } else if (g->pressed) {
             solve_contact_group(step, g, 1, 1);
         } else if (g->depth & TL_DEPTH_LIFTED) {
             solve_contact_group(step, g, 0, 1);
@@ -244,7 +248,12 @@ static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
 
 static void relax_contacts(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
-        relax_contact_group(step, &tl_group_pool(step->h)[i]);
+        tl_contact_group *g = &tl_group_pool(step->h)[i];
+        if (g->plane) {
+            relax_in_plane(step, g);
+        } else {
+            relax_contact_group(step, g);
+        }
     }
 }
 

@@ -6,7 +6,7 @@
  * and what the system does not know (friction about the normal, rolling), is left to the sweep over all contacts that
  * follows.
  *
- * The lanes are the rows of one contact: its points, then both tangents. */
+ * The lanes are the rows of one contact: its points, then its tangents, of which there is one in a plane. */
 
 #define MOST_ROUNDS 8u
 #define LEAST_ROUNDS 2u
@@ -22,8 +22,8 @@
 
 /* --- rows --------------------------------------------------------------------------------------- */
 
-static inline uint32_t rows_of(const tl_pressed *p) { return p->points + 2u; }
 static inline uint32_t point_bits(const tl_pressed *p) { return (1u << p->points) - 1u; }
+static inline uint32_t tangent_bits(const tl_pressed *p) { return (1u << p->rows) - (1u << p->points); }
 static inline int holds(const tl_pressed *p, uint32_t row) { return (int)(p->holds >> row & 1u); }
 
 static inline tl_contact_group *group_of(const tl_header *h, const tl_pressed *p) {
@@ -57,8 +57,11 @@ static void fill_rows(const tl_header *h, tl_pressed *p) {
         p->gap[k] = g->point[k].gap[lane];
     }
     fill_row(p, points, t, &g->ja1[0][lane], &g->jb1[0][lane]);
-    fill_row(p, points + 1u, t2, &g->ja2[0][lane], &g->jb2[0][lane]);
-    p->gap[points] = g->slid[0][lane], p->gap[points + 1u] = g->slid[1][lane];
+    p->gap[points] = g->slid[0][lane];
+    if (p->rows > points + 1u) {
+        fill_row(p, points + 1u, t2, &g->ja2[0][lane], &g->jb2[0][lane]);
+        p->gap[points + 1u] = g->slid[1][lane];
+    }
     p->held = g->held[lane];
     p->hold = g->static_friction[lane], p->slide = g->dynamic_friction[lane];
     for (uint32_t side = 0; side < 2u; side++) {
@@ -94,7 +97,7 @@ static inline tl_f8 share_of(const tl_pressed *p, uint32_t r, uint32_t s, const 
 /* A row that does not hold stands for itself alone. */
 static void fill_diagonal(const tl_pressed *p, float soft, float *d) {
     float *row = d, lanes[TL_LANES];
-    for (uint32_t i = 0; i < rows_of(p); row += ++i) {
+    for (uint32_t i = 0; i < p->rows; row += ++i) {
         tl_f8_storeu(lanes, tl_f8_add(share_of(p, i, 0, p, 0), share_of(p, i, 1u, p, 1u)));
         for (uint32_t j = 0; j < i; j++) {
             row[j] = holds(p, i) && holds(p, j) ? lanes[j] : 0.0f;
@@ -104,8 +107,8 @@ static void fill_diagonal(const tl_pressed *p, float soft, float *d) {
 }
 
 static void fill_block(const tl_pressed *p, const tl_pressed *q, uint32_t shares, float *v) {
-    const float *end = v + rows_of(p) * rows_of(q);
-    for (uint32_t r = 0; r < rows_of(p); r++, v += rows_of(q)) {
+    const float *end = v + p->rows * q->rows;
+    for (uint32_t r = 0; r < p->rows; r++, v += q->rows) {
         float lanes[TL_LANES];
         tl_f8 sum = tl_f8_zero();
         for (uint32_t i = 0; i < 4u && holds(p, r); i++) {
@@ -116,7 +119,7 @@ static void fill_block(const tl_pressed *p, const tl_pressed *q, uint32_t shares
             tl_f8_storeu(v, sum);
         } else {
             tl_f8_storeu(lanes, sum);
-            memcpy(v, lanes, rows_of(q) * sizeof(float));
+            memcpy(v, lanes, q->rows * sizeof(float));
         }
     }
 }
@@ -136,13 +139,12 @@ static void factor_press(const tl_header *h, tl_press *s) {
     s->stale = 0;
 }
 
-/* The right-hand side and then the solution of a contact. What follows, to eight floats at least, is the diagonal
- * block: it is left as it is. */
+/* The right-hand side and then the solution of a contact. What follows, to eight floats, is left as it is. */
 static inline float *x_of(const tl_header *h, const tl_press *s, uint32_t k) {
     return tl_press_values(h) + s->values + tl_press_nodes(h)[s->first + k].x;
 }
 static inline void put_x(float *x, const tl_pressed *p, tl_f8 lanes) {
-    tl_m8 rows = tl_m8_from_bits((1u << rows_of(p)) - 1u);
+    tl_m8 rows = tl_m8_from_bits((1u << p->rows) - 1u);
     tl_f8_storeu(x, tl_f8_select(rows, lanes, tl_f8_loadu(x)));
 }
 /* 0 in rows that do not hold. */
@@ -196,7 +198,7 @@ static inline tl_f8 speeds_to_meet(const tl_header *h, const tl_pressed *p) {
 
 /* What stays as it is until the speeds are met, and where it begins. */
 static void begin_to_meet(const tl_step *step, tl_pressed *p) {
-    for (uint32_t row = 0; row < rows_of(p); row++) {
+    for (uint32_t row = 0; row < p->rows; row++) {
         p->impulse[row] = *impulse_of(step->h, p, row);
     }
     tl_f8 gap = gaps_of(step->h, p), ahead = tl_f8_mul(tl_f8_max(gap, tl_f8_zero()), tl_f8_set1(step->inverse_sub));
@@ -208,7 +210,7 @@ static void begin_to_meet(const tl_step *step, tl_pressed *p) {
 }
 
 static void end_meeting(const tl_header *h, const tl_pressed *p) {
-    for (uint32_t row = 0; row < rows_of(p); row++) {
+    for (uint32_t row = 0; row < p->rows; row++) {
         *impulse_of(h, p, row) = p->impulse[row];
     }
 }
@@ -222,7 +224,7 @@ static inline int look_at(const tl_header *h, tl_pressed *p, uint32_t *changed) 
     tl_m8 bears = tl_m8_or(tl_f8_gt(impulse, tl_f8_zero()), tl_f8_lt(speed, tl_f8_set1(-CLOSING)));
     uint32_t met = tl_m8_bits(tl_f8_lt(tl_f8_abs(speed), tl_f8_set1(AT_REST)));
     uint32_t now = tl_m8_bits(bears) & point_bits(p) & ~p->barred;
-    now |= p->slides ? 0u : 3u << p->points;
+    now |= p->slides ? 0u : tangent_bits(p);
     *changed |= now ^ p->holds;
     p->holds = now;
     return (now & ~met) != 0;
@@ -279,7 +281,7 @@ static int slide(const tl_header *h, tl_pressed *p) {
         return 0;
     }
     tl_f8 share = tl_f8_set1(p->slide * pressure / length - 1.0f);
-    add_impulses(h, p, tl_f8_and_mask(tl_m8_from_bits(3u << p->points), tl_f8_mul(tl_f8_load(p->impulse), share)));
+    add_impulses(h, p, tl_f8_and_mask(tl_m8_from_bits(tangent_bits(p)), tl_f8_mul(tl_f8_load(p->impulse), share)));
     p->slides = 1u;
     return 1;
 }

@@ -77,6 +77,8 @@
     X(island_parent, uint32_t, BODY, ISLANDS, STEP, 4)                                                                 \
     X(island_quiet, float, BODY, ISLANDS, STEP, 4)                                                                     \
     X(contact_order, uint32_t, CONTACT, ROWS, STEP, 4)                                                                 \
+    X(row_planes, uint32_t, ROW, ROWS, STEP, 4)                                                                        \
+    X(contact_plane, uint32_t, CONTACT, ROWS, STEP, 4)                                                                 \
     X(group_pool, tl_contact_group, GROUP, ROWS, STEP, 4)                                                              \
     X(joint_order, uint32_t, JOINT, ROWS, STEP, 4)                                                                     \
     X(joint_group_pool, tl_joint_group, JOINTGROUP, ROWS, STEP, 4)                                                     \

@@ -50,6 +50,8 @@ typedef struct tl_contact_group {
     uint32_t depth;             /* TL_DEPTH_* */
     uint32_t struck;            /* whether any lane bounced in the last sweep */
     uint32_t pressed;           /* bits of lanes that are in a press */
+    uint32_t plane;             /* the axis across which all bodies stay, plus one; 0 if they need not */
+    uint32_t reserved[7];       /* lanes are aligned */
     float normal[3][TL_LANES];  /* from a to b */
     float tangent[3][TL_LANES]; /* the second tangent is normal x tangent */
     float ja1[3][TL_LANES], jb1[3][TL_LANES], ja2[3][TL_LANES], jb2[3][TL_LANES];
@@ -60,10 +62,18 @@ typedef struct tl_contact_group {
     float held[TL_LANES];    /* 1: it did not slide in the last step; else 0 */
     float lift[TL_LANES];    /* m: as how much deeper than they are the points count */
     float static_friction[TL_LANES], dynamic_friction[TL_LANES], restitution[TL_LANES], rolling[TL_LANES];
+    float stiff[TL_LANES]; /* in a plane: how much stiffer the springs of points are */
     float tangent_impulse[2][TL_LANES], twist_impulse[TL_LANES], rolling_impulse[2][TL_LANES];
     float roll_mass[TL_LANES];
     tl_contact_lane_point point[4];
 } tl_contact_group;
+
+/* contact_plane: how a contact is solved, in a world that has bodies locked to a plane. Where both of its bodies stay
+ * in one plane, records of its manifold that lie behind one another make one point. */
+static inline uint32_t tl_plane_of(uint32_t w) { return w & 3u; } /* the axis across the plane plus one; 0: none */
+static inline uint32_t tl_plane_points(uint32_t w) { return w >> 2 & 7u; }
+static inline uint32_t tl_plane_point_of(uint32_t w, uint32_t record) { return w >> (8u + 2u * record) & 3u; }
+static inline uint32_t tl_plane_first(uint32_t w, uint32_t point) { return w >> (16u + 2u * point) & 3u; }
 
 #define TL_JOINT_ROWS 12u
 #define TL_LINK_ROWS 6u
@@ -146,14 +156,14 @@ typedef struct tl_linkage {
 
 #define TL_MOST_PRESSED 128u
 
-/* A contact that is solved at once with others; a lane is a row: of its points, then of both tangents. */
+/* A contact that is solved at once with others; a lane is a row: of its points, then of its tangents. */
 typedef struct tl_pressed {
     uint32_t place;          /* its contact group times eight, plus its lane */
     uint32_t row[2], points; /* body rows */
+    uint32_t rows;           /* of the points, then of the tangents */
     uint32_t holds;          /* bits of the rows that are equalities now */
     uint32_t slides;         /* friction had to give way in this solve */
     uint32_t barred;         /* bits of rows that would have pulled at once */
-    uint32_t reserved;
     float mass[2], turns[2]; /* of a and b: inverse mass, 1 if impulses turn it */
     float held, hold, slide; /* as in the group: 1 if it did not slide, static and dynamic friction */
     float padding;           /* what follows is aligned */
