@@ -45,8 +45,9 @@ void tl_stage_locks(tl_step *step);
 /* commit: poses and velocities back to the bodies. */
 void tl_stage_commit(tl_step *step);
 
-/* events: what began, ended, hit and broke. */
+/* events: what began, ended, hit and broke; touches are told from the groups of contacts. */
 void tl_events_begin(tl_header *h);
+void tl_stage_touches(tl_step *step);
 void tl_stage_events(tl_step *step);
 /* Tells the end of a touch that a contact had. */
 void tl_event_contact_end(tl_header *h, uint32_t contact);

@@ -391,13 +391,14 @@ static int read_depths(const tl_step *step, const tl_press *s) {
     const tl_header *h = step->h;
     const tl_block_node *node = tl_press_nodes(h) + s->first;
     float *v = tl_press_values(h) + s->values, most = h->settings.push_speed * step->sub;
+    float budget = h->settings.error_budget, left = budget > 0.0f ? tl_min(PRESS_DEPTH, 0.5f * budget) : PRESS_DEPTH;
     int any = 0;
     for (uint32_t k = 0; k < s->count; k++) {
         const tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
         for (uint32_t row = 0; row < node[k].rows; row++) {
             float depth = 0.0f;
             if (row < p->points && holds(p, row)) {
-                depth = -(gap_of(h, p, row) + speed_of(tl_row_push(h), p, row)) - PRESS_DEPTH;
+                depth = -(gap_of(h, p, row) + speed_of(tl_row_push(h), p, row)) - left;
                 depth = tl_min(tl_max(depth, 0.0f), most);
             }
             v[node[k].x + row] = depth;
