@@ -46,8 +46,7 @@ static void begin_step(tl_step *step, const talus_world *world, float dt) {
     step->parted = step->has_islands = step->bounced = step->rolled = 0;
     step->most_rows = 0;
     memset(step->sums, 0, sizeof step->sums);
-    set_level(step, 0);
-    h->settings.substep = step->sub;
+    h->settings.substep = dt / (float)h->settings.substeps;
     tl_events_begin(h);
     h->counters.islands_slept = h->counters.islands_woken = h->counters.bodies_slept = h->counters.bodies_woken = 0;
     h->counters.impact_sweeps = h->counters.groups_struck = 0;
@@ -215,40 +214,21 @@ static void solve(tl_step *step, tl_watch *w) {
     tl_stage_commit(step);
 }
 
-/* Without an error budget all islands have the same sub-steps. */
-static void count_substeps(const tl_step *step) {
-    talus_counters *n = &step->h->counters;
-    n->worst_error = 0.0f;
-    n->islands_over = 0;
-    n->substeps_least = n->substeps_most = step->substeps;
-    n->substeps_given = step->substeps * step->h->awake_bodies;
-}
-
-/* The islands of each level of effort by themselves, the lowest level first. */
+/* The islands of each level of effort by themselves, the lowest level first; without an error budget there is one. */
 static void solve_levels(tl_step *step, tl_watch *w) {
-    int budget = step->h->settings.error_budget > 0.0f;
-    uint32_t levels = budget ? tl_efforts_begin(step) : 1u;
+    uint32_t levels = tl_efforts_begin(step);
     for (uint32_t level = 0; levels >> level; level++) {
-        if (!(levels >> level & 1u)) {
-            continue;
-        }
-        if (budget) {
+        if (levels >> level & 1u) {
             set_level(step, level);
             tl_efforts_select(step);
-        }
-        solve(step, w);
-        if (budget) {
+            solve(step, w);
             tl_efforts_note(step);
+            tl_watch_lap(w, TALUS_STAGE_COMMIT);
+            tl_stage_touches(step);
+            tl_watch_lap(w, TALUS_STAGE_EVENTS);
         }
-        tl_watch_lap(w, TALUS_STAGE_COMMIT);
-        tl_stage_touches(step);
-        tl_watch_lap(w, TALUS_STAGE_EVENTS);
     }
-    if (budget) {
-        tl_efforts_end(step);
-    } else {
-        count_substeps(step);
-    }
+    tl_efforts_end(step);
 }
 
 talus_status tl_run_world_step(talus_world *world, uint32_t i, talus_command *c) {

@@ -24,6 +24,8 @@ static uint32_t most_level(const tl_settings *s) {
     return level;
 }
 
+static int has_budget(const tl_step *step) { return step->h->settings.error_budget > 0.0f; }
+
 static void find_islands(tl_step *step) {
     tl_header *h = step->h;
     float *errors = tl_island_quiet(h);
@@ -48,7 +50,8 @@ static void level_islands(tl_header *h) {
     }
 }
 
-uint32_t tl_efforts_begin(tl_step *step) {
+/* A bit for each level that awake bodies have, when all of an island have one. */
+static uint32_t find_levels(tl_step *step) {
     tl_header *h = step->h;
     tl_body_effort *efforts = tl_body_efforts(h);
     uint32_t most = most_level(&h->settings), levels = 0, any = 0;
@@ -64,12 +67,16 @@ uint32_t tl_efforts_begin(tl_step *step) {
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         levels |= 1u << efforts[tl_awake_body(h)[k]].level;
     }
-    levels = levels ? levels : 1u;
-    step->awake = h->awake_bodies;
+    return levels ? levels : 1u;
+}
+
+uint32_t tl_efforts_begin(tl_step *step) {
+    talus_counters *n = &step->h->counters;
+    n->worst_error = 0.0f;
+    n->substeps_least = n->substeps_most = n->substeps_given = n->islands_over = 0;
+    step->awake = step->h->awake_bodies;
+    uint32_t levels = has_budget(step) ? find_levels(step) : 1u;
     step->parted = (levels & (levels - 1u)) != 0;
-    h->counters.worst_error = 0.0f;
-    h->counters.substeps_least = h->counters.substeps_most = 0;
-    h->counters.substeps_given = h->counters.islands_over = 0;
     return levels;
 }
 
@@ -236,7 +243,7 @@ static float note_joints(const tl_header *h, int give) {
     return worst;
 }
 
-void tl_efforts_note(tl_step *step) {
+static void note_errors(tl_step *step) {
     tl_header *h = step->h;
     float worst = tl_max(note_contacts(h, step->has_islands), note_joints(h, step->has_islands));
     if (!step->has_islands && worst > h->settings.error_budget) {
@@ -245,9 +252,16 @@ void tl_efforts_note(tl_step *step) {
         note_joints(h, 1);
     }
     h->counters.worst_error = tl_max(worst, h->counters.worst_error);
-    h->counters.substeps_least = h->counters.substeps_least ? h->counters.substeps_least : step->substeps;
-    h->counters.substeps_most = step->substeps; /* the levels come in ascending order */
-    h->counters.substeps_given += step->substeps * h->awake_bodies;
+}
+
+void tl_efforts_note(tl_step *step) {
+    talus_counters *n = &step->h->counters;
+    n->substeps_least = n->substeps_least ? n->substeps_least : step->substeps;
+    n->substeps_most = step->substeps; /* the levels come in ascending order */
+    n->substeps_given += step->substeps * step->h->awake_bodies;
+    if (has_budget(step)) {
+        note_errors(step);
+    }
     if (step->level > 0) {
         scale_impulses(step);
     }
