@@ -43,6 +43,7 @@ typedef enum talus_command_kind {
     TALUS_COMMAND_JOINT_CREATE,
     TALUS_COMMAND_JOINT_DESTROY,
     TALUS_COMMAND_JOINT_SET_DRIVE,
+    TALUS_COMMAND_WORLD_SET_ACCURACY,
     TALUS_COMMAND_COUNT
 } talus_command_kind;
 
@@ -98,6 +99,7 @@ typedef struct talus_command {
         talus_mass mass;
         talus_material material;
         talus_filter filter;
+        talus_accuracy accuracy;
         talus_vec3 gravity;
         float gravity_scale;
         uint32_t locks;

@@ -48,6 +48,8 @@ typedef struct talus_world_def {
     talus_vec3 gravity;          /* m/s^2 */
     uint32_t substeps;           /* 1..TALUS_MAX_SUBSTEPS */
     uint32_t iterations;         /* solver passes a sub-step, 1..TALUS_MAX_ITERATIONS */
+    float error_budget;          /* m, 0..1; 0: none; see talus_accuracy */
+    uint32_t most_substeps;      /* 1..TALUS_MAX_SUBSTEPS */
     float contact_hertz;         /* stiffness of contacts in overlap, Hz; bounded by what the sub-steps can follow */
     float contact_damping_ratio; /* 1 is critical */
     float push_speed;            /* m/s, the fastest that overlap is pushed out */
@@ -81,6 +83,27 @@ talus_isa talus_world_get_isa(const talus_world *world);
 
 talus_status talus_world_set_gravity(talus_world *world, talus_vec3 gravity);
 talus_status talus_world_get_def(const talus_world *world, talus_world_def *out);
+
+/* How exact steps are, and how much they may do for it.
+ *
+ * With an error budget each island (bodies that touch or are tied, moving kinematic ones included) gets sub-steps of
+ * its own: `substeps` to begin with, twice as many or 4, 8, ... times while a surface in it overlaps another, or a
+ * joint's ends are apart, by more than the budget; half as many again when it has been well below for a second. A joint
+ * that is turned off a locked axis counts by how far that shifts what it holds. Contacts are as many times stiffer as
+ * there are more sub-steps. No island gets more than `most_substeps`, and none less than `substeps`. What errors no
+ * sub-steps take away, as of what is pressed between moving walls, stay at that.
+ *
+ * The counters tell what the last step found and gave. It costs nothing while there is no budget; with one, a
+ * hundredth of a step's time where all islands are below it, and a pass over the awake bodies, contacts and joints
+ * where some are not. What an island gets is part of the state, so replays and rollbacks are the same to the bit. */
+typedef struct talus_accuracy {
+    float error_budget;     /* m, 0..1; 0: none, every island gets `substeps` */
+    uint32_t substeps;      /* 1..TALUS_MAX_SUBSTEPS */
+    uint32_t most_substeps; /* 1..TALUS_MAX_SUBSTEPS; where it is less than `substeps` those are the most */
+} talus_accuracy;
+
+/* From the next step on. TALUS_NOT_FINITE, TALUS_BAD_ARGUMENT. */
+talus_status talus_world_set_accuracy(talus_world *world, const talus_accuracy *accuracy);
 
 /* The stages, in the order of a step. */
 typedef enum talus_stage {
@@ -162,15 +185,21 @@ typedef struct talus_counters {
     uint32_t restitution_skipped; /* 1: nothing bounced, the stage did not run */
     uint32_t joints_skipped;
     uint32_t rolling_skipped;
+    uint32_t substeps_least, substeps_most; /* that an island got */
+    uint32_t substeps_given;                /* summed over the awake bodies */
+    uint32_t islands_over;                  /* that were over the error budget */
+    float worst_error;                      /* m: the largest as the error budget counts it; 0 without one */
 } talus_counters;
 
 talus_status talus_world_get_counters(const talus_world *world, talus_counters *out);
 
-/* The largest errors that the state holds now. O(contacts + joints). */
+/* The largest errors that the state holds now: what the last step achieved. O(contacts + joints), when it is asked. */
 typedef struct talus_errors {
     float overlap;       /* m: of touching surfaces */
     float joint_linear;  /* m: of locked axes */
     float joint_angular; /* rad: of locked axes */
+    float contact_speed; /* m/s: at which surfaces that overlap close */
+    float joint_speed;   /* m/s: along locked linear axes */
 } talus_errors;
 
 talus_status talus_world_measure(const talus_world *world, talus_errors *out);

@@ -6,16 +6,26 @@
 #include "stage/narrow/batch.h"
 #include "stage/store/store.h"
 
+#define TL_EFFORT_SUMS 14u
+
 /* What the stages of one step share. Holds pointers and so lives on the stack only. */
 typedef struct tl_step {
     tl_header *h;
     const void *geometry;
-    float dt, sub;                              /* s: of the step, of a sub-step */
-    float inverse_sub;                          /* 1/s */
-    float warm_scale;                           /* this sub-step over the one that the stored impulses come from */
+    uint32_t substeps; /* of the islands in work */
+    float dt, sub;     /* s: of the step, of a sub-step */
+    float inverse_sub; /* 1/s */
+    float sub_before;  /* s: of the sub-step that the stored impulses are of; 0: there are none */
+    float warm_scale;  /* this sub-step over that one */
     float bias_rate, mass_scale, impulse_scale; /* of soft contacts */
-    float spring;  /* N s a sub-step, m and kg of effective mass: of soft contacts at rest */
-    uint32_t rows; /* body rows in use, the still one included, rounded up to eight */
+    float spring;    /* N s a sub-step, m and kg of effective mass: of soft contacts at rest */
+    uint32_t rows;   /* body rows in use, the still one included, rounded up to eight */
+    uint32_t level;  /* of the islands in work: two to it times as many sub-steps as the settings have */
+    uint32_t awake;  /* bodies, of which those of one level may be in work */
+    int parted;      /* islands are of several levels, and solved level by level */
+    int has_islands; /* island_parent is of this step */
+    uint32_t sums[TL_EFFORT_SUMS], most_rows; /* counters over levels */
+    int bounced, rolled;
     int any_locks;
     int planar;  /* some contacts have a plane */
     int pushes;  /* something is deep enough, or tied by joints, to be pushed */

@@ -40,8 +40,9 @@ void tl_stage_stiffness(tl_step *step);
 /* Keeps velocities and displacements off the axes that a body is locked to. */
 void tl_stage_locks(tl_step *step);
 
-/* events: what began, ended, hit and broke. */
+/* events: what began, ended, hit and broke; touches are told from the groups of contacts. */
 void tl_events_begin(tl_header *h);
+void tl_stage_touches(tl_step *step);
 void tl_stage_events(tl_step *step);
 /* Tells the end of a touch that a contact had. */
 void tl_event_contact_end(tl_header *h, uint32_t contact);

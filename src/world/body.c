@@ -88,6 +88,7 @@ talus_status tl_run_body_create(talus_world *world, uint32_t i, talus_command *c
     memset(&tl_body_force(h)[i], 0, sizeof(tl_row8));
     memset(&tl_body_momentum(h)[i], 0, sizeof(tl_row8));
     memset(&tl_body_quiets(h)[i], 0, sizeof(tl_body_quiet));
+    memset(&tl_body_efforts(h)[i], 0, sizeof(tl_body_effort));
     tl_row_set_pose(&tl_body_pose(h)[i], &pose);
     tl_body_previous(h)[i] = tl_body_pose(h)[i];
     tl_body_frame(h)[i].f[6] = 1.0f;

@@ -36,6 +36,15 @@ talus_status talus_world_set_gravity(talus_world *world, talus_vec3 gravity) {
     return on_world(world, TALUS_COMMAND_WORLD_SET_GRAVITY, &c);
 }
 
+talus_status talus_world_set_accuracy(talus_world *world, const talus_accuracy *accuracy) {
+    if (!accuracy) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    talus_command c;
+    c.as.accuracy = *accuracy;
+    return on_world(world, TALUS_COMMAND_WORLD_SET_ACCURACY, &c);
+}
+
 /* --- bodies ----------------------------------------------------------------------------------- */
 
 talus_status talus_body_create(talus_world *world, const talus_body_def *def, talus_body *out) {

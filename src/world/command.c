@@ -26,6 +26,7 @@ typedef struct field {
 static const field FIELDS_NOTHING[] = {END};
 static const field FIELDS_STEP[] = {RUN(4, step.dt), END};
 static const field FIELDS_GRAVITY[] = {RUN(4, gravity), END};
+static const field FIELDS_ACCURACY[] = {RUN(4, accuracy), END};
 static const field FIELDS_FLIP[] = {RUN(4, flip), END};
 static const field FIELDS_POSE[] = {RUN(4, pose), END};
 static const field FIELDS_MOVE[] = {RUN(4, move), END};

@@ -31,7 +31,8 @@
     X(SHAPE_SET_FILTER, shape_set_filter, SHAPE, FILTER)                                                               \
     X(JOINT_CREATE, joint_create, NEW, JOINT_DEF)                                                                      \
     X(JOINT_DESTROY, joint_destroy, JOINT, NOTHING)                                                                    \
-    X(JOINT_SET_DRIVE, joint_set_drive, JOINT, DRIVE)
+    X(JOINT_SET_DRIVE, joint_set_drive, JOINT, DRIVE)                                                                  \
+    X(WORLD_SET_ACCURACY, world_set_accuracy, WORLD, ACCURACY)
 
 /* What a command does: checks its arguments and, if they are in order, carries it out. `i` is the index behind its
  * handle; a creation writes the new handle. */

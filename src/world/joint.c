@@ -138,6 +138,7 @@ static int axis_counts(const tl_joint_record *j, uint32_t i) {
     }
     return j->cone_axis == TL_NONE || j->cone_axis == i - 3u;
 }
+int tl_joint_is_locked(const tl_joint_record *j, uint32_t i) { return axis_counts(j, i) && is_locked(&j->axis[i]); }
 
 static void compile_equalities(tl_joint_record *j) {
     for (uint32_t i = 0; i < 6u; i++) {
@@ -429,11 +430,11 @@ talus_status talus_joint_get_error(const talus_world *world, talus_joint joint, 
     const float turn[3] = {r.rotation.x, r.rotation.y, r.rotation.z};
     float l2 = 0.0f, a2 = 0.0f;
     for (uint32_t k = 0; k < 3u; k++) {
-        if (axis_counts(j, k) && is_locked(&j->axis[k])) {
+        if (tl_joint_is_locked(j, k)) {
             float e = shift[k] - j->axis[k].lower;
             l2 += e * e;
         }
-        if (axis_counts(j, 3u + k) && is_locked(&j->axis[3u + k])) {
+        if (tl_joint_is_locked(j, 3u + k)) {
             float e = 2.0f * tl_atan2(turn[k], tl_abs(r.rotation.w)) - j->axis[3u + k].lower;
             a2 += e * e;
         }

@@ -1,5 +1,5 @@
 /* The fixed-timestep driver: an accumulator with a cap against the spiral of death (Fiedler, "Fix your timestep!",
- * 2004). */
+ * 2004); and what keeps steps to a time. */
 #include "talus/loop.h"
 
 #include "base/vec.h"
@@ -45,5 +45,52 @@ talus_status talus_loop_advance(talus_loop *loop, double elapsed, uint32_t *step
     loop->accumulator = time < 0.0 ? 0.0 : time >= dt ? 0.0 : time;
     loop->alpha = tl_clamp((float)(loop->accumulator / dt), 0.0f, 1.0f);
     *steps = due;
+    return TALUS_OK;
+}
+
+/* --- time ------------------------------------------------------------------------------------- */
+
+#define QUICK_STEPS 30u
+#define QUICK_SHARE 0.5 /* of the time: what twice the sub-steps take is then still within it */
+
+talus_status talus_time_budget_init(talus_time_budget *budget, double seconds, const talus_accuracy *wanted) {
+    if (!budget || !wanted) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    if (seconds - seconds != 0.0 || !tl_is_finite(wanted->error_budget)) {
+        return TALUS_NOT_FINITE;
+    }
+    if (!(seconds > 0.0) || !(wanted->error_budget > 0.0f && wanted->error_budget <= 1.0f) || wanted->substeps < 1u ||
+        wanted->substeps > wanted->most_substeps || wanted->most_substeps > TALUS_MAX_SUBSTEPS) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    budget->seconds = seconds;
+    budget->wanted = *wanted;
+    budget->most_substeps = wanted->substeps;
+    budget->quick = 0;
+    return TALUS_OK;
+}
+
+talus_status talus_time_budget_advance(talus_time_budget *budget, double took, talus_accuracy *next) {
+    if (!budget || !next) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    if (took - took != 0.0) {
+        return TALUS_NOT_FINITE;
+    }
+    if (took < 0.0) {
+        return TALUS_BAD_ARGUMENT;
+    }
+    uint32_t n = budget->most_substeps;
+    budget->quick = took < QUICK_SHARE * budget->seconds ? budget->quick + 1u : 0u;
+    if (took > budget->seconds) {
+        n = n / 2u > budget->wanted.substeps ? n / 2u : budget->wanted.substeps;
+    } else if (budget->quick >= QUICK_STEPS) {
+        n = 2u * n < budget->wanted.most_substeps ? 2u * n : budget->wanted.most_substeps;
+        budget->quick = 0;
+    }
+    budget->most_substeps = n;
+    *next = budget->wanted;
+    next->most_substeps = n;
     return TALUS_OK;
 }

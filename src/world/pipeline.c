@@ -1,5 +1,8 @@
 /* The step: one direction, one loop over sub-steps. */
+#include <string.h>
+
 #include "stage/broad/refit.h"
+#include "stage/island/efforts.h"
 #include "stage/island/islands.h"
 #include "stage/stages.h"
 #include "world/command.h"
@@ -13,7 +16,7 @@
 
 static void set_softness(tl_step *step) {
     const tl_settings *s = &step->h->settings;
-    float hertz = tl_min(s->contact_hertz, MOST_HERTZ_OF_SUBSTEPS * step->inverse_sub);
+    float hertz = tl_min(s->contact_hertz * (float)(1u << step->level), MOST_HERTZ_OF_SUBSTEPS * step->inverse_sub);
     float omega = 6.2831853f * hertz, zeta = s->contact_damping_ratio, h = step->sub;
     float a1 = 2.0f * zeta + h * omega, a2 = h * omega * a1, a3 = 1.0f / (1.0f + a2);
     step->bias_rate = omega / a1;
@@ -22,19 +25,29 @@ static void set_softness(tl_step *step) {
     step->spring = h * omega * omega;
 }
 
+/* The sub-steps of islands of a level. Of two levels each length is the other's times a power of two, to the bit. */
+static void set_level(tl_step *step, uint32_t level) {
+    step->level = level;
+    step->substeps = step->h->settings.substeps << level;
+    step->sub = step->dt / (float)step->substeps;
+    step->inverse_sub = 1.0f / step->sub;
+    step->warm_scale = step->sub_before > 0.0f ? step->sub / step->sub_before : 1.0f;
+    step->any_locks = step->skip_exact = step->deferred = step->before_move = step->stiff = step->again = 0;
+    step->pushes = 0;
+    set_softness(step);
+}
+
 static void begin_step(tl_step *step, const talus_world *world, float dt) {
     tl_header *h = tl_header_of(world);
     step->h = h;
     step->geometry = world->geometry;
     step->dt = dt;
-    step->sub = dt / (float)h->settings.substeps;
-    step->inverse_sub = 1.0f / step->sub;
-    step->warm_scale = h->settings.substep > 0.0f ? step->sub / h->settings.substep : 1.0f;
-    step->rows = 0;
-    step->any_locks = step->skip_exact = step->deferred = step->before_move = step->stiff = step->again = 0;
-    step->pushes = 0;
-    h->settings.substep = step->sub;
-    set_softness(step);
+    step->sub_before = h->settings.substep;
+    step->rows = step->awake = 0;
+    step->parted = step->has_islands = step->bounced = step->rolled = 0;
+    step->most_rows = 0;
+    memset(step->sums, 0, sizeof step->sums);
+    h->settings.substep = dt / (float)h->settings.substeps;
     tl_events_begin(h);
     h->counters.islands_slept = h->counters.islands_woken = h->counters.bodies_slept = h->counters.bodies_woken = 0;
     h->counters.impact_sweeps = h->counters.groups_struck = 0;
@@ -109,7 +122,7 @@ static void push_back(tl_step *step, const tl_kernels *k) {
 static void run_substep(tl_step *step, const tl_kernels *k, uint32_t i, tl_watch *w) {
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups, passes = h->settings.iterations;
-    int first = i == 0, last = i + 1u == h->settings.substeps;
+    int first = i == 0, last = i + 1u == step->substeps;
     if (first) {
         tl_stage_stiffness(step);
         k->warm_contacts(step, 0, contacts);
@@ -188,7 +201,7 @@ static void solve(tl_step *step, tl_watch *w) {
     h->counters.groups_bouncing = bouncing;
     tl_watch_lap(w, TALUS_STAGE_ROWS);
     if (h->groups || h->joint_groups || step->any_locks) {
-        for (uint32_t i = 0; i < h->settings.substeps; i++) {
+        for (uint32_t i = 0; i < step->substeps; i++) {
             run_substep(step, k, i, w);
         }
     } else {
@@ -199,6 +212,24 @@ static void solve(tl_step *step, tl_watch *w) {
     h->counters.rolling_skipped = !rolling;
     k->store_contacts(step, 0, h->groups);
     k->store_joints(step, 0, h->joint_groups);
+    k->commit(step, 0, step->rows);
+}
+
+/* The islands of each level of effort by themselves, the lowest level first; without an error budget there is one. */
+static void solve_levels(tl_step *step, tl_watch *w) {
+    uint32_t levels = tl_efforts_begin(step);
+    for (uint32_t level = 0; levels >> level; level++) {
+        if (levels >> level & 1u) {
+            set_level(step, level);
+            tl_efforts_select(step);
+            solve(step, w);
+            tl_efforts_note(step);
+            tl_watch_lap(w, TALUS_STAGE_COMMIT);
+            tl_stage_touches(step);
+            tl_watch_lap(w, TALUS_STAGE_EVENTS);
+        }
+    }
+    tl_efforts_end(step);
 }
 
 talus_status tl_run_world_step(talus_world *world, uint32_t i, talus_command *c) {
@@ -222,8 +253,7 @@ talus_status tl_run_world_step(talus_world *world, uint32_t i, talus_command *c)
     tl_watch_lap(&w, TALUS_STAGE_PAIRS);
     tl_stage_narrow(&step);
     tl_watch_lap(&w, TALUS_STAGE_NARROW);
-    solve(&step, &w);
-    tl_kernels_of((talus_isa)h->isa)->commit(&step, 0, step.rows);
+    solve_levels(&step, &w);
     tl_stage_leave(h, step.geometry);
     tl_watch_lap(&w, TALUS_STAGE_COMMIT);
     tl_watch_islands(&w, &step);
@@ -233,7 +263,7 @@ talus_status tl_run_world_step(talus_world *world, uint32_t i, talus_command *c)
     tl_watch_lap(&w, TALUS_STAGE_SLEEP);
     h->counters.awake_bodies = h->awake_bodies;
     h->counters.sleeping_bodies = h->bodies.used - 1u - h->awake_bodies;
-    h->counters.joints_skipped = h->joint_groups == 0;
+    h->counters.joints_skipped = h->counters.joints_solved == 0;
     if (++h->steps_low == 0) {
         h->steps_high++;
     }

@@ -103,6 +103,29 @@ static uint32_t fetch_contacts(const tl_header *h, uint32_t first, ends *out) {
     return count;
 }
 
+/* The same from the lists, where the groups are of some islands only. */
+static void tally_lists(const tl_header *h) {
+    uint32_t *parent = tl_row_island(h);
+    const uint32_t *rows = tl_body_row(h);
+    tl_island_tally *tally = tl_tallies(h);
+    for (uint32_t k = 0; k < h->awake_contacts; k++) {
+        const tl_contact_meta *m = &tl_contacts(h)[tl_awake_contact(h)[k]];
+        if (m->flags & TL_CONTACT_COLORED) {
+            tl_island_tally *t = tie(parent, tally, rows[m->body_a], rows[m->body_b]);
+            t->contacts++;
+            t->rows += m->count + 3u;
+        }
+    }
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        const tl_joint_record *j = &tl_joints(h)[tl_awake_joint(h)[k]];
+        if (j->rows > 0) {
+            tl_island_tally *t = tie(parent, tally, rows[j->body_a], rows[j->body_b]);
+            t->joints++;
+            t->rows += j->rows;
+        }
+    }
+}
+
 static void tally_constraints(const tl_header *h) {
     uint32_t *parent = tl_row_island(h);
     tl_island_tally *tally = tl_tallies(h);
@@ -184,11 +207,15 @@ static uint64_t share(uint64_t ticks, uint32_t part, uint32_t whole) {
 }
 
 /* Fills in the islands of the frame but for their ticks. */
-static void tally_islands(tl_header *h, talus_frame *frame) {
+static void tally_islands(tl_header *h, int parted, talus_frame *frame) {
     const tl_island_tally *tally = tl_tallies(h);
     uint32_t found[TALUS_FRAME_ISLANDS], rows = h->awake_bodies + 1u;
     begin_rows(h, rows);
-    tally_constraints(h);
+    if (parted) {
+        tally_lists(h);
+    } else {
+        tally_constraints(h);
+    }
     gather(h, rows);
     frame->largest_count = find_largest(h, rows, found, &frame->islands);
     memset(frame->largest, 0, sizeof frame->largest);
@@ -214,11 +241,11 @@ static int is_due(const tl_header *h, const talus_frame *last) {
 
 /* While nothing begins or ends to be tied, the islands are those of the last step; so are their rows while the points
  * of all contacts are as many. */
-static void find_islands(tl_header *h, talus_frame *frame) {
+static void find_islands(tl_header *h, int parted, talus_frame *frame) {
     uint32_t capacity = h->capacity[TL_COUNT_FRAME];
     const talus_frame *last = &tl_ring(h)[(h->next_frame + capacity - 1u) % capacity];
     if (is_due(h, last)) {
-        tally_islands(h, frame);
+        tally_islands(h, parted, frame);
         const tl_island_tally *all = tl_tallies(h);
         h->tallied = h->ties;
         h->tallied_ties = all->contacts + all->joints;
@@ -238,7 +265,7 @@ void tl_profile_islands(const tl_step *step, const talus_profile *time, talus_fr
     const talus_counters *n = &step->h->counters;
     uint64_t of_rows = t[TALUS_STAGE_ROWS] + t[TALUS_STAGE_SOLVE] + t[TALUS_STAGE_RELAX] + t[TALUS_STAGE_RESTITUTION];
     uint64_t of_bodies = t[TALUS_STAGE_VELOCITY] + t[TALUS_STAGE_POSITION] + t[TALUS_STAGE_COMMIT];
-    find_islands(step->h, frame);
+    find_islands(step->h, step->parted, frame);
     const tl_island_tally *all = tl_tallies(step->h);
     for (uint32_t i = 0; i < frame->largest_count; i++) {
         talus_frame_island *island = &frame->largest[i];

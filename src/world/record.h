@@ -18,7 +18,7 @@
 
 #include "talus/record.h"
 
-#define TL_RECORD_VERSION 1u
+#define TL_RECORD_VERSION 2u
 #define TL_RECORD_HEAD 16u                             /* bytes */
 #define TL_RECORD_HASHES (8u * (size_t)TL_STATE_COUNT) /* bytes of both kinds of hashes */
 #define TL_CHUNK_HEAD 20u

@@ -17,11 +17,11 @@ typedef struct float_column {
 } float_column;
 
 static const float_column FLOATS[] = {
-    {TL_COLUMN_body_pose, 0xffu, 3},      {TL_COLUMN_body_velocity, 0xffu, -1},   {TL_COLUMN_body_momentum, 0xffu, -1},
-    {TL_COLUMN_body_inertias, 0xffu, -1}, {TL_COLUMN_body_frame, 0xffu, 3},       {TL_COLUMN_body_force, 0xffu, -1},
-    {TL_COLUMN_body_quiets, 3u, -1},      {TL_COLUMN_body_mass, 0x1fffu, -1},     {TL_COLUMN_shape_place, 0xffu, 3},
-    {TL_COLUMN_shape_material, 15u, -1},  {TL_COLUMN_shape_pose, 0x7fu, 3},       {TL_COLUMN_heads, 0xffu, -1},
-    {TL_COLUMN_points, 0x7f7f7f7fu, -1},  {TL_COLUMN_joint_states, 0xfffffu, -1},
+    {TL_COLUMN_body_pose, 0xffu, 3},      {TL_COLUMN_body_velocity, 0xffu, -1}, {TL_COLUMN_body_momentum, 0xffu, -1},
+    {TL_COLUMN_body_inertias, 0xffu, -1}, {TL_COLUMN_body_frame, 0xffu, 3},     {TL_COLUMN_body_force, 0xffu, -1},
+    {TL_COLUMN_body_quiets, 3u, -1},      {TL_COLUMN_body_efforts, 2u, -1},     {TL_COLUMN_body_mass, 0x1fffu, -1},
+    {TL_COLUMN_shape_place, 0xffu, 3},    {TL_COLUMN_shape_material, 15u, -1},  {TL_COLUMN_shape_pose, 0x7fu, 3},
+    {TL_COLUMN_heads, 0xffu, -1},         {TL_COLUMN_points, 0x7f7f7f7fu, -1},  {TL_COLUMN_joint_states, 0xfffffu, -1},
 };
 
 /* Rows that are in use; those that are free hold whatever they did before. */

@@ -52,6 +52,7 @@ talus_world_def talus_world_def_default(void) {
     def.gravity = tl_v(0.0f, -9.81f, 0.0f);
     def.substeps = 4;
     def.iterations = 1;
+    def.most_substeps = 32;
     def.contact_hertz = 58.0f;
     def.contact_damping_ratio = 0.5f;
     def.push_speed = 3.0f;
@@ -68,6 +69,15 @@ talus_world_def talus_world_def_default(void) {
 
 static int capacity_fits(uint32_t n) { return n >= 1u && n <= TALUS_MAX_CAPACITY; }
 static int in_range(float x, float low, float high) { return x >= low && x <= high; }
+
+static talus_status check_accuracy(float error_budget, uint32_t substeps, uint32_t most_substeps) {
+    if (!tl_is_finite(error_budget)) {
+        return TALUS_NOT_FINITE;
+    }
+    int ok = in_range(error_budget, 0.0f, 1.0f) && substeps >= 1u && substeps <= TALUS_MAX_SUBSTEPS &&
+             most_substeps >= 1u && most_substeps <= TALUS_MAX_SUBSTEPS;
+    return ok ? TALUS_OK : TALUS_BAD_ARGUMENT;
+}
 
 static talus_status check_def(const talus_world_def *d) {
     if (!d || !capacity_fits(d->body_capacity) || !capacity_fits(d->shape_capacity) ||
@@ -86,8 +96,11 @@ static talus_status check_def(const talus_world_def *d) {
             return TALUS_NOT_FINITE;
         }
     }
-    int ok = d->substeps >= 1u && d->substeps <= TALUS_MAX_SUBSTEPS && d->iterations >= 1u &&
-             d->iterations <= TALUS_MAX_ITERATIONS && in_range(d->contact_hertz, 1e-3f, 1e5f) &&
+    talus_status accuracy = check_accuracy(d->error_budget, d->substeps, d->most_substeps);
+    if (accuracy != TALUS_OK) {
+        return accuracy;
+    }
+    int ok = d->iterations >= 1u && d->iterations <= TALUS_MAX_ITERATIONS && in_range(d->contact_hertz, 1e-3f, 1e5f) &&
              in_range(d->contact_damping_ratio, 0.0f, 1e4f) && in_range(d->push_speed, 0.0f, 1e4f) &&
              in_range(d->speculative_margin, 0.0f, 1e3f) && in_range(d->recycle_slack, 0.0f, 1.0f) &&
              in_range(d->restitution_speed, 0.0f, 1e4f) && in_range(d->hit_speed, 0.0f, 1e4f) &&
@@ -107,6 +120,7 @@ size_t talus_world_size(const talus_world_def *def) {
 static void take_settings(tl_settings *s, const talus_world_def *d) {
     s->gravity = d->gravity;
     s->substeps = d->substeps, s->iterations = d->iterations;
+    s->error_budget = d->error_budget, s->most_substeps = d->most_substeps;
     s->contact_hertz = d->contact_hertz, s->contact_damping_ratio = d->contact_damping_ratio;
     s->push_speed = d->push_speed, s->speculative_margin = d->speculative_margin;
     s->recycle_slack = d->recycle_slack, s->restitution_speed = d->restitution_speed;
@@ -192,6 +206,18 @@ talus_status tl_run_world_set_gravity(talus_world *world, uint32_t i, talus_comm
     return TALUS_OK;
 }
 
+talus_status tl_run_world_set_accuracy(talus_world *world, uint32_t i, talus_command *c) {
+    const talus_accuracy *a = &c->as.accuracy;
+    (void)i;
+    talus_status status = check_accuracy(a->error_budget, a->substeps, a->most_substeps);
+    if (status == TALUS_OK) {
+        tl_settings *s = &tl_header_of(world)->settings;
+        s->error_budget = a->error_budget;
+        s->substeps = a->substeps, s->most_substeps = a->most_substeps;
+    }
+    return status;
+}
+
 talus_status talus_world_get_def(const talus_world *world, talus_world_def *out) {
     if (!tl_world_is_sound(world) || !out) {
         return TALUS_BAD_ARGUMENT;
@@ -207,6 +233,7 @@ talus_status talus_world_get_def(const talus_world *world, talus_world_def *out)
     out->profile_capacity = h->capacity[TL_COUNT_FRAME];
     out->gravity = s->gravity;
     out->substeps = s->substeps, out->iterations = s->iterations;
+    out->error_budget = s->error_budget, out->most_substeps = s->most_substeps;
     out->contact_hertz = s->contact_hertz, out->contact_damping_ratio = s->contact_damping_ratio;
     out->push_speed = s->push_speed, out->speculative_margin = s->speculative_margin;
     out->recycle_slack = s->recycle_slack, out->restitution_speed = s->restitution_speed;

@@ -47,6 +47,8 @@ void tl_body_take_mass(talus_world *world, uint32_t body, const talus_mass *mass
 /* Removes a shape from trees, lists and pairs, without touching the body's mass. */
 void tl_shape_remove(tl_header *h, uint32_t shape);
 
+/* Whether an axis (0..2 linear, 3..5 angular) can have an error. */
+int tl_joint_is_locked(const tl_joint_record *j, uint32_t axis);
 /* Where the joint's frames stand in the bodies' mass frames. */
 void tl_joint_place(const tl_header *h, tl_joint_record *joint);
 

@@ -242,6 +242,11 @@ static void call(talus_world *w, scene *s, input *in) {
     case 26:
         v = vector(in), talus_world_set_gravity(w, v);
         break;
+    case 27: {
+        talus_accuracy a = {number(in), take(in, 1), take(in, 1)};
+        talus_world_set_accuracy(w, &a);
+        break;
+    }
     default:
         dt = take(in, 1) & 1u ? number(in) : 1.0f / 60.0f;
         if (s->steps++ < MAX_STEPS) {

@@ -217,10 +217,40 @@ static void build_presses(talus_world *world) {
     golden_shape(world, golden_body(world, TALUS_DYNAMIC, golden_vec(0.1f, 0.8f, 5.0f)), &def);
 }
 
+/* Islands of several levels under an error budget that changes: columns, a pair of boxes, what falls on both. */
+static void build_budget(talus_world *world) {
+    golden_floor(world);
+    for (int i = 0; i < 10; i++) {
+        golden_box(world, golden_body(world, TALUS_DYNAMIC, golden_vec(0.0f, 0.5f + (float)i, 0.0f)),
+                   golden_vec(0.5f, 0.5f, 0.5f));
+        if (i % 3 == 0) {
+            golden_box(world, golden_body(world, TALUS_DYNAMIC, golden_vec(4.0f + (float)i, 0.4f, 0.0f)),
+                       golden_vec(0.3f, 0.4f, 0.3f));
+        }
+    }
+}
+
+static void change_budget(talus_world *world, uint32_t step) {
+    talus_accuracy accuracy = {5e-4f, 2u + step / 40u % 3u, 32u};
+    if (step % 40u == 0) {
+        accuracy.error_budget = step == 120u ? 0.0f : accuracy.error_budget;
+        golden_check(talus_world_set_accuracy(world, &accuracy), "accuracy");
+    }
+    if (step % 30u == 20u) {
+        talus_body b = golden_body(world, TALUS_DYNAMIC, golden_vec(golden_range(-1.0f, 8.0f), 13.0f, 0.0f));
+        golden_ball(world, b, 0.3f);
+    }
+}
+
 const golden_scene golden_scenes[] = {
-    {"stack", 240, build_stack, 0},     {"pyramid", 200, build_pyramid, 0},
-    {"pile", 240, build_pile, 0},       {"mixer", 240, build_mixer, turn_paddle},
-    {"bounce", 240, build_bounce, 0},   {"sleep", 300, build_sleep, throw_ball},
-    {"churn", 300, build_churn, churn}, {"presses", 240, build_presses, 0},
+    {"stack", 240, build_stack, 0},
+    {"pyramid", 200, build_pyramid, 0},
+    {"pile", 240, build_pile, 0},
+    {"mixer", 240, build_mixer, turn_paddle},
+    {"bounce", 240, build_bounce, 0},
+    {"sleep", 300, build_sleep, throw_ball},
+    {"churn", 300, build_churn, churn},
+    {"presses", 240, build_presses, 0},
+    {"budget", 240, build_budget, change_budget},
 };
 const unsigned golden_scene_count = sizeof golden_scenes / sizeof *golden_scenes;

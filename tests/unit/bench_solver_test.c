@@ -158,7 +158,7 @@ static void figures(void **state) {
     for (uint32_t i = 0; i < table.count; i++) {
         const solver_case *c = &table.cases[i];
         int tumbler = strcmp(c->scene->name, "tumbler") == 0;
-        assert_true(c->rows == 4 && c->bodies > 0 && c->steps == 20);
+        assert_true(c->rows == 5 && c->bodies > 0 && c->steps == 20);
         for (uint32_t k = 0; k < c->rows; k++) {
             const solver_row *r = &c->row[k];
             assert_true(r->ms > 0 && r->median >= r->ms && r->spread >= 0);

@@ -393,7 +393,7 @@ static void reads_base64(void **state) {
 static gltf_world build(const gltf_scene *scene) {
     gltf_world world;
     gltf_error error;
-    gltf_build_options options = {0, 0, TALUS_ISA_BEST, 0, 0, 0, 0};
+    gltf_build_options options = {.isa = TALUS_ISA_BEST};
     if (gltf_build(scene, &options, &world, &error) != GLTF_OK) {
         print_error("%s\n", error.text);
     }
@@ -435,7 +435,7 @@ static void refuses_flat_hulls(void **state) {
     gltf_scene s = load_patched("\"count\":8", "\"count\":4"); /* the corners of one face */
     gltf_world w;
     gltf_error error;
-    gltf_build_options options = {0, 0, TALUS_ISA_BEST, 0, 0, 0, 0};
+    gltf_build_options options = {.isa = TALUS_ISA_BEST};
     assert_int_equal(gltf_build(&s, &options, &w, &error), GLTF_BROKEN);
     assert_non_null(strstr(error.text, "$.nodes[2].extensions." RIGID ".collider.geometry: a hull of 4 points"));
     gltf_world_free(&w);

@@ -146,10 +146,69 @@ static void no_sweep_after_a_jump(void **state) {
     kit_end(&world);
 }
 
+/* Half the sub-steps after a step that was late, twice as many after thirty that were quick, within what is wanted. */
+static void sub_steps_follow_the_clock(void **state) {
+    (void)state;
+    const talus_accuracy wanted = {1e-3f, 3, 20};
+    talus_time_budget b;
+    talus_accuracy next;
+    OK(talus_time_budget_init(&b, 0.25, &wanted));
+    const struct {
+        double took;
+        int steps;
+        uint32_t most;
+    } runs[] = {{0.125, 60, 3}, {0.1, 29, 3},   {0.1, 1, 6},   {0.2, 60, 6}, {0.1, 30, 12}, {0.1, 30, 20},
+                {0.1, 30, 20},  {0.25, 60, 20}, {0.26, 1, 10}, {0.26, 1, 5}, {9.0, 1, 3},   {9.0, 5, 3},
+                {0.0, 29, 3},   {0.2, 1, 3},    {0.0, 29, 3},  {0.0, 1, 6}};
+    for (size_t i = 0; i < sizeof runs / sizeof *runs; i++) {
+        for (int k = 0; k < runs[i].steps; k++) {
+            OK(talus_time_budget_advance(&b, runs[i].took, &next));
+        }
+        assert_int_equal(next.most_substeps, runs[i].most);
+        assert_int_equal(next.substeps, 3);
+        assert_true(next.error_budget == 1e-3f);
+    }
+}
+
+static void bad_time_budgets(void **state) {
+    (void)state;
+    const talus_accuracy good = {1e-3f, 4, 32};
+    const talus_accuracy bad[] = {{0.0f, 4, 32},  {-1.0f, 4, 32}, {1.5f, 4, 32},
+                                  {1e-3f, 0, 32}, {1e-3f, 4, 3},  {1e-3f, 4, 65}};
+    const double times[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
+    talus_accuracy next = {0.5f, 7, 9}, nan = good;
+    talus_time_budget b, kept;
+    nan.error_budget = NAN;
+    OK(talus_time_budget_init(&b, 0.25, &good));
+    kept = b;
+    for (int i = 0; i < 6; i++) {
+        assert_int_equal(talus_time_budget_init(&b, 0.25, &bad[i]), TALUS_BAD_ARGUMENT);
+    }
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(talus_time_budget_init(&b, times[i], &good), TALUS_NOT_FINITE);
+        assert_int_equal(talus_time_budget_advance(&b, times[i], &next), TALUS_NOT_FINITE);
+    }
+    assert_int_equal(talus_time_budget_init(&b, 0.25, &nan), TALUS_NOT_FINITE);
+    assert_int_equal(talus_time_budget_init(&b, 0.0, &good), TALUS_BAD_ARGUMENT);
+    assert_int_equal(talus_time_budget_init(NULL, 0.25, &good), TALUS_BAD_ARGUMENT);
+    assert_int_equal(talus_time_budget_init(&b, 0.25, NULL), TALUS_BAD_ARGUMENT);
+    assert_int_equal(talus_time_budget_advance(&b, -1e-9, &next), TALUS_BAD_ARGUMENT);
+    assert_int_equal(talus_time_budget_advance(NULL, 0.1, &next), TALUS_BAD_ARGUMENT);
+    assert_int_equal(talus_time_budget_advance(&b, 0.1, NULL), TALUS_BAD_ARGUMENT);
+    assert_memory_equal(&b, &kept, sizeof b);
+    assert_int_equal(next.most_substeps, 9);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_arguments), cmocka_unit_test(time_is_kept),  cmocka_unit_test(what_is_too_late_is_dropped),
-        cmocka_unit_test(sums_hold),     cmocka_unit_test(poses_between), cmocka_unit_test(no_sweep_after_a_jump),
+        cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(time_is_kept),
+        cmocka_unit_test(what_is_too_late_is_dropped),
+        cmocka_unit_test(sums_hold),
+        cmocka_unit_test(poses_between),
+        cmocka_unit_test(no_sweep_after_a_jump),
+        cmocka_unit_test(sub_steps_follow_the_clock),
+        cmocka_unit_test(bad_time_budgets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

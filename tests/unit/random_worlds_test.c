@@ -246,7 +246,8 @@ static void meddle(scene *s) {
     talus_drive drive = any_drive();
     float force = s->wild ? across(1.0f, 1e8f) : 1e3f;
     talus_vec3 f = point(force), at = point(5.0f), spin = point(force);
-    switch (below(20)) {
+    talus_accuracy accuracy = {below(3) ? across(1e-5f, 1.0f) : 0.0f, 1u + below(6), 1u + below(64)};
+    switch (below(21)) {
     case 0:
         (void)talus_body_destroy(w, body);
         break;
@@ -304,6 +305,9 @@ static void meddle(scene *s) {
     case 18:
         (void)talus_body_set_gravity_scale(w, body, between(-3.0f, 3.0f));
         break;
+    case 19:
+        OK(talus_world_set_accuracy(w, &accuracy));
+        break;
     default:
         (void)talus_world_set_gravity(w, point(20.0f));
         break;
@@ -360,6 +364,8 @@ static uint64_t run(uint64_t seed, talus_isa isa, talus_isa other) {
     def.profile_capacity = isa == TALUS_ISA_SCALAR ? 0u : 3u; /* the state knows nothing of it */
     def.substeps = 1u + below(8);
     def.iterations = 1u + below(3);
+    def.error_budget = below(3) ? 0.0f : across(1e-4f, 0.1f);
+    def.most_substeps = 1u + below(32);
     def.recycle_slack = below(3) ? def.recycle_slack : 0.0f;
     def.enable_sleep = below(4) != 0;
     def.isa = isa;

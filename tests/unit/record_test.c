@@ -80,7 +80,10 @@ static talus_status set(play *p, talus_command_kind kind, uint32_t i) {
     talus_filter filter = {1u, draw(p, 3) ? ~(uint64_t)0 : 2u, 0};
     talus_mass mass = {between(p, 1.0f, 50.0f), {0.0f, 0.1f, 0.0f}, {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}}};
     talus_drive drive = {1, 0, 0.5f, 1.0f, 10.0f, 1.0f, 100.0f};
+    talus_accuracy accuracy = {draw(p, 3) ? 1e-3f : 0.0f, 2u + draw(p, 3), 16};
     switch (kind) {
+    case TALUS_COMMAND_WORLD_SET_ACCURACY:
+        return talus_world_set_accuracy(w, &accuracy);
     case TALUS_COMMAND_WORLD_SET_GRAVITY:
         return talus_world_set_gravity(w, kit_vec(0.0f, between(p, -11.0f, -8.0f), 0.0f));
     case TALUS_COMMAND_BODY_SET_MASS:

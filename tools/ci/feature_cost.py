@@ -20,6 +20,7 @@ FEATURES = {
     "sensors": (r"sensor|SENSOR|senses", ()),
     "events": (r"event|EVENT|\bhit_", ()),
     "sleep": (r"sleep|slept|asleep", ()),
+    "error budget": (r"effort|budget|->parted|has_islands", ()),
     "profiler": (r"tl_watch|tl_profile|talus_clock|^watch\.h$", ()),
 }
 

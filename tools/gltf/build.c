@@ -128,6 +128,8 @@ static talus_world_def size_world(const gltf_scene *scene, const gltf_build_opti
     def.substeps = options->substeps > 0 ? options->substeps : def.substeps;
     def.iterations = options->iterations > 0 ? options->iterations : def.iterations;
     def.contact_hertz = options->contact_hertz > 0 ? options->contact_hertz : def.contact_hertz;
+    def.error_budget = options->error_budget;
+    def.most_substeps = options->most_substeps > 0 ? options->most_substeps : def.most_substeps;
     def.recycle_slack = options->no_kept_manifolds ? 0 : def.recycle_slack;
     def.enable_sleep = options->no_sleep ? 0 : def.enable_sleep;
     def.profile_capacity = options->profile_capacity;

@@ -12,6 +12,8 @@ typedef struct gltf_build_options {
     uint32_t profile_capacity; /* frames of the profiler's ring */
     float contact_hertz;       /* 0: the library's default */
     int no_kept_manifolds;     /* all are computed in every step */
+    float error_budget;        /* m, 0: none */
+    uint32_t most_substeps;    /* 0: the library's default */
 } gltf_build_options;
 
 /* A world with the memory it lives in. */

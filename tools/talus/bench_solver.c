@@ -22,11 +22,15 @@ const uint32_t solver_scene_count = sizeof solver_scenes / sizeof *solver_scenes
 const char *const solver_error_names[BENCH_ERROR_COUNT] = {"overlap_p99", "overlap_most", "joints_apart", "drift",
                                                            "energy_gained"};
 const char *const solver_series_names[SOLVER_SERIES_COUNT] = {"substeps", "iterations", "iterations_of_one_substep",
-                                                              "others"};
+                                                              "budgets", "others"};
 
 /* Sub-steps, iterations, no sleep; contacts of so many Hz; all manifolds in every step. */
 #define WITH(n, passes, hertz, anew)                                                                                   \
     { .substeps = n, .iterations = passes, .no_sleep = 1, .contact_hertz = hertz, .no_kept_manifolds = anew }
+
+/* Sub-steps by an error budget (m). */
+#define BUDGET(m)                                                                                                      \
+    { .substeps = 4, .iterations = 1, .no_sleep = 1, .error_budget = m }
 
 static const solver_setting settings[] = {{"1 sub-step", SOLVER_SUBSTEPS, 1, WITH(1, 1, 0, 0)},
                                           {"2 sub-steps", SOLVER_SUBSTEPS, 0, WITH(2, 1, 0, 0)},
@@ -40,6 +44,10 @@ static const solver_setting settings[] = {{"1 sub-step", SOLVER_SUBSTEPS, 1, WIT
                                           {"1 of 4 iterations", SOLVER_SINGLE, 0, WITH(1, 4, 0, 0)},
                                           {"1 of 8 iterations", SOLVER_SINGLE, 0, WITH(1, 8, 0, 0)},
                                           {"1 of 16 iterations", SOLVER_SINGLE, 0, WITH(1, 16, 0, 0)},
+                                          {"budget 2 mm", SOLVER_BUDGETS, 0, BUDGET(2e-3f)},
+                                          {"budget 1 mm", SOLVER_BUDGETS, 1, BUDGET(1e-3f)},
+                                          {"budget 0.3 mm", SOLVER_BUDGETS, 0, BUDGET(3e-4f)},
+                                          {"budget 0.1 mm", SOLVER_BUDGETS, 0, BUDGET(1e-4f)},
                                           {"4, contacts of 30 Hz", SOLVER_OTHERS, 0, WITH(4, 1, 30, 0)},
                                           {"8, contacts of 120 Hz", SOLVER_OTHERS, 0, WITH(8, 1, 120, 0)},
                                           {"4, all manifolds anew", SOLVER_OTHERS, 1, WITH(4, 1, 0, 1)}};

@@ -23,6 +23,7 @@ typedef enum solver_series {
     SOLVER_SUBSTEPS,   /* of one iteration */
     SOLVER_ITERATIONS, /* of the library's sub-steps */
     SOLVER_SINGLE,     /* iterations of one sub-step */
+    SOLVER_BUDGETS,    /* of error, from the library's sub-steps on */
     SOLVER_OTHERS,
     SOLVER_SERIES_COUNT
 } solver_series;

@@ -52,12 +52,12 @@ static void draw_series(const solver_case *c, int e, solver_series series, const
 
 static void draw_legend(gltf_text *out) {
     static const char *const names[SOLVER_SERIES_COUNT] = {"sub-steps, 1 iteration", "iterations, 4 sub-steps",
-                                                           "iterations, 1 sub-step", "other settings"};
+                                                           "iterations, 1 sub-step", "error budgets", "other settings"};
     double x = LEFT;
     for (int s = 0; s < SOLVER_SERIES_COUNT; s++) {
         gltf_text_add(out, "<circle fill=\"var(--c%d)\" cx=\"%.1f\" cy=\"20\" r=\"5\"/>", s, x);
         gltf_text_add(out, "<text x=\"%.1f\" y=\"24\">%s</text>\n", x + 12.0, names[s]);
-        x += 185.0;
+        x += 170.0;
     }
     gltf_text_add(out, "<text x=\"%.1f\" y=\"24\">full: no other setting is as fast with less error</text>\n", x);
 }

@@ -48,10 +48,11 @@ static void add_row(const solver_row *r, gltf_text *out) {
     gltf_text_quoted(out, r->setting->name);
     gltf_text_add(out,
                   ",\"series\":\"%s\",\"substeps\":%" PRIu32 ",\"iterations\":%" PRIu32
-                  ",\"contact_hertz\":%g,\"manifolds_kept\":%s,\"ms\":%.6f,\"ms_median\":%.6f,\"ms_spread\":%.6f",
-                  solver_series_names[r->setting->series], b->substeps, b->iterations,
+                  ",\"error_budget_m\":%g,\"contact_hertz\":%g,\"manifolds_kept\":%s",
+                  solver_series_names[r->setting->series], b->substeps, b->iterations, (double)b->error_budget,
                   (double)(b->contact_hertz > 0 ? b->contact_hertz : def.contact_hertz),
-                  b->no_kept_manifolds ? "false" : "true", r->ms, r->median, r->spread);
+                  b->no_kept_manifolds ? "false" : "true");
+    gltf_text_add(out, ",\"ms\":%.6f,\"ms_median\":%.6f,\"ms_spread\":%.6f", r->ms, r->median, r->spread);
     for (int e = 0; e < BENCH_ERROR_COUNT; e++) {
         if (r->errors[e] < 0) {
             gltf_text_add(out, ",\"%s_m\":null", solver_error_names[e]);

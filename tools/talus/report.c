@@ -9,6 +9,10 @@
 
 /* --- for people --- */
 
+static double mean_substeps(const run_result *r) {
+    return r->awake_body_steps > 0 ? (double)r->substeps_given / (double)r->awake_body_steps : 0;
+}
+
 static double percent(uint64_t part, uint64_t whole) { return whole > 0 ? 100.0 * (double)part / (double)whole : 0.0; }
 
 static void print_usage(const char *name, const talus_usage *usage, uint64_t dropped) {
@@ -65,8 +69,10 @@ static void print_skipped(const run_result *r) {
     skipped_print(s, &parts);
     printf("done in how many steps of %" PRIu64 "\n%s", s->steps, parts.size > 0 && !parts.failed ? parts.data : "");
     gltf_text_free(&parts);
-    printf("\nworst errors of the second half: overlap %.2f mm, joints %.2f mm and %.4f rad\n",
+    printf("\nworst errors of the second half: overlap %.2f mm, joints %.2f mm and %.4f rad;\n",
            1e3 * (double)r->worst.overlap, 1e3 * (double)r->worst.joint_linear, (double)r->worst.joint_angular);
+    printf("speeds left: surfaces close at %.4f m/s, joints part at %.4f m/s\n", (double)r->worst.contact_speed,
+           (double)r->worst.joint_speed);
     printf("\nafter the last step: %" PRIu32 " bodies awake, %" PRIu32 " asleep, %" PRIu32 " islands, %" PRIu32
            " contacts touch with %" PRIu32 " points\n",
            c->awake_bodies, c->sleeping_bodies, c->islands, c->contacts_touching, c->contact_points);
@@ -81,6 +87,21 @@ static void print_skipped(const run_result *r) {
     }
     if (r->sensor_begins > 0) {
         printf("triggers: entered %" PRIu64 " times, left %" PRIu64 " times\n", r->sensor_begins, r->sensor_ends);
+    }
+}
+
+/* What was asked of the steps, and what came of it. */
+static void print_accuracy(const run_options *options, const run_result *r) {
+    double budget = 1e3 * (double)options->source.build.error_budget;
+    printf("\nerror budget %g mm: %" PRIu64 " of %" PRIu32
+           " steps began with more, at most %.3f mm; in the second half %" PRIu64 ", at most %.3f mm\n",
+           budget, r->steps_over, r->steps, 1e3 * (double)r->worst_error, r->settled_over,
+           1e3 * (double)r->settled_error);
+    printf("sub-steps of an awake body: least %" PRIu32 ", mean %.2f, most %" PRIu32 "\n", r->substeps_least,
+           mean_substeps(r), r->substeps_most);
+    if (options->time_budget > 0) {
+        printf("time budget %g ms: %" PRIu64 " of %" PRIu32 " steps took longer\n", 1e3 * options->time_budget,
+               r->steps_late, r->steps);
     }
 }
 
@@ -101,6 +122,9 @@ void report_for_people(const run_options *options, const gltf_scene *scene, cons
     }
     print_memory(world, r);
     print_skipped(r);
+    if (options->source.build.error_budget > 0) {
+        print_accuracy(options, r);
+    }
     if (r->not_finite_step > 0) {
         printf("NOT FINITE: states have a NaN or an infinity from step %" PRIu32 " on\n", r->not_finite_step);
     }
@@ -155,6 +179,22 @@ static void add_counters(gltf_text *out, const run_result *r) {
     gltf_text_add(out, "}");
 }
 
+static void add_accuracy(gltf_text *out, const run_options *options, const run_result *r) {
+    gltf_text_add(out, ",\"accuracy\":{\"error_budget_m\":%.6g", (double)options->source.build.error_budget);
+    add_count(out, "substeps_least", r->substeps_least);
+    add_number(out, "substeps_mean", mean_substeps(r));
+    add_count(out, "substeps_most", r->substeps_most);
+    add_number(out, "worst_error_m", (double)r->worst_error);
+    add_count(out, "steps_over", r->steps_over);
+    add_number(out, "second_half_worst_error_m", (double)r->settled_error);
+    add_count(out, "second_half_steps_over", r->settled_over);
+    if (options->time_budget > 0) {
+        add_number(out, "time_budget_ms", 1e3 * options->time_budget);
+        add_count(out, "steps_late", r->steps_late);
+    }
+    gltf_text_add(out, "}");
+}
+
 static void add_notes(gltf_text *out, const gltf_scene *scene, const run_result *r) {
     uint32_t count = 0;
     gltf_text_add(out, ",\"notes\":[");
@@ -198,6 +238,8 @@ void report_json(const run_options *options, const gltf_scene *scene, const gltf
     add_number(&out, "overlap_m", (double)r->worst.overlap);
     add_number(&out, "joint_separation_m", (double)r->worst.joint_linear);
     add_number(&out, "joint_angle_rad", (double)r->worst.joint_angular);
+    add_number(&out, "closing_speed_m_s", (double)r->worst.contact_speed);
+    add_number(&out, "joint_speed_m_s", (double)r->worst.joint_speed);
     add_count(&out, "peak_rss_kib", host_peak_rss_kib());
     add_count(&out, "block_bytes", world->block_bytes);
     add_count(&out, "geometry_bytes", world->geometry_bytes);
@@ -210,6 +252,9 @@ void report_json(const run_options *options, const gltf_scene *scene, const gltf
                           r->steps > 0 ? (double)r->stage_ns[i] * 1e-6 / r->steps : 0);
         }
         gltf_text_add(&out, "}");
+    }
+    if (options->source.build.error_budget > 0) {
+        add_accuracy(&out, options, r);
     }
     add_counters(&out, r);
     skipped_json(&r->skips, &out);

@@ -18,7 +18,7 @@
 
 /* --- options --- */
 
-enum { OUT = SOURCE_OPTION_COUNT, JSON, PROFILE, ANIMATE, QUIET, HELP };
+enum { OUT = SOURCE_OPTION_COUNT, JSON, PROFILE, ANIMATE, QUIET, TIME_BUDGET, HELP };
 
 static const struct option long_options[] = {SOURCE_LONG_OPTIONS,
                                              {"out", required_argument, NULL, OUT},
@@ -26,6 +26,7 @@ static const struct option long_options[] = {SOURCE_LONG_OPTIONS,
                                              {"profile", no_argument, NULL, PROFILE},
                                              {"quiet", no_argument, NULL, QUIET},
                                              {"animate", required_argument, NULL, ANIMATE},
+                                             {"time-budget", required_argument, NULL, TIME_BUDGET},
                                              {"help", no_argument, NULL, HELP},
                                              {NULL, 0, NULL, 0}};
 
@@ -47,6 +48,12 @@ static int take_option(int option, run_options *out) {
     case QUIET:
         out->quiet = 1;
         return 0;
+    case TIME_BUDGET:
+        if (!source_number("--time-budget", optarg, "ms", 0.001, 10000, &out->time_budget)) {
+            return TOOL_USAGE;
+        }
+        out->time_budget *= 1e-3;
+        return 0;
     default:
         return option > 0 && option < SOURCE_OPTION_COUNT ? source_take_option(option, optarg, &out->source)
                                                           : tool_fail(TOOL_USAGE, "see: talus help run");
@@ -66,8 +73,10 @@ typedef struct runner {
     trajectory_state *states;
     talus_pose *poses;
     uint32_t frame_every; /* steps between two frames of the animation */
-    float margin;         /* m, the world's speculative one */
-    float flown;          /* m, what the fastest body flies in a step now */
+    talus_time_budget time;
+    uint32_t most_substeps; /* that the world may give an island */
+    float margin;           /* m, the world's speculative one */
+    float flown;            /* m, what the fastest body flies in a step now */
 } runner;
 
 static float larger(float a, float b) { return a > b ? a : b; }
@@ -101,6 +110,26 @@ static void take_states(runner *r, uint32_t step, double ms) {
     }
 }
 
+/* What the step found and gave; the errors that it found are those that the step before had left. */
+static void take_accuracy(const runner *r, const talus_counters *c) {
+    run_result *out = r->result;
+    if (c->awake_bodies == 0) {
+        return;
+    }
+    int over = c->worst_error > r->options->source.build.error_budget, settled = 2 * c->steps >= out->steps;
+    out->awake_body_steps += c->awake_bodies;
+    out->substeps_given += c->substeps_given;
+    out->substeps_least =
+        out->substeps_least > 0 && out->substeps_least < c->substeps_least ? out->substeps_least : c->substeps_least;
+    out->substeps_most = out->substeps_most > c->substeps_most ? out->substeps_most : c->substeps_most;
+    out->steps_over += (uint64_t)over;
+    out->worst_error = larger(out->worst_error, c->worst_error);
+    if (settled) {
+        out->settled_over += (uint64_t)over;
+        out->settled_error = larger(out->settled_error, c->worst_error);
+    }
+}
+
 static void take_counters(const runner *r) {
     run_result *out = r->result;
     const talus_world *world = &r->world->world;
@@ -116,6 +145,7 @@ static void take_counters(const runner *r) {
     out->contacts_sleeping += c.contacts_sleeping;
     out->pairs_made += c.pairs_made;
     out->proxies_refit += c.proxies_refit;
+    take_accuracy(r, &c);
     skipped_take(&out->skips, r->scene, &c, r->flown, r->margin);
     talus_events events;
     if (talus_world_get_events(world, &events) == TALUS_OK) {
@@ -130,6 +160,8 @@ static void take_errors(run_result *out, const talus_world *world, uint32_t step
         out->worst.overlap = larger(out->worst.overlap, e.overlap);
         out->worst.joint_linear = larger(out->worst.joint_linear, e.joint_linear);
         out->worst.joint_angular = larger(out->worst.joint_angular, e.joint_angular);
+        out->worst.contact_speed = larger(out->worst.contact_speed, e.contact_speed);
+        out->worst.joint_speed = larger(out->worst.joint_speed, e.joint_speed);
     }
 }
 
@@ -158,6 +190,18 @@ static void show_progress(const run_options *options, uint32_t step, uint32_t st
     fflush(stderr);
 }
 
+/* The clock has its say between steps: what it comes to is a call like any other. */
+static void keep_time(runner *r, double took) {
+    talus_accuracy next;
+    if (r->options->time_budget > 0 && talus_time_budget_advance(&r->time, took, &next) == TALUS_OK) {
+        r->result->steps_late += took > r->options->time_budget;
+        if (next.most_substeps != r->most_substeps) {
+            talus_world_set_accuracy(&r->world->world, &next);
+            r->most_substeps = next.most_substeps;
+        }
+    }
+}
+
 static int run_steps(runner *r) {
     run_result *out = r->result;
     const talus_clock clock = {stage_clock, NULL};
@@ -176,6 +220,7 @@ static int run_steps(runner *r) {
                              talus_status_text(status));
         }
         out->step_ms[step - 1] = (double)(end - start) * 1e-6;
+        keep_time(r, (double)(end - start) * 1e-9);
         for (int i = 0; timed && i < TALUS_STAGE_COUNT; i++) {
             out->stage_ns[i] += profile.stage[i];
         }
@@ -215,6 +260,12 @@ static int run_world(const run_options *options, const gltf_scene *scene, gltf_w
     memset(&def, 0, sizeof def);
     talus_world_get_def(&world->world, &def);
     r.margin = def.speculative_margin;
+    r.most_substeps = def.most_substeps;
+    if (options->time_budget > 0) {
+        uint32_t most = def.most_substeps > def.substeps ? def.most_substeps : def.substeps;
+        const talus_accuracy wanted = {def.error_budget, def.substeps, most};
+        talus_time_budget_init(&r.time, options->time_budget, &wanted);
+    }
     r.frame_every = (uint32_t)fmax(1, floor(1 / (FRAMES_PER_SECOND * (double)result->dt) + 0.5));
     r.states = calloc((size_t)scene->body_count + 1, sizeof *r.states);
     r.poses = calloc((size_t)scene->body_count + 1, sizeof *r.poses);
@@ -287,6 +338,9 @@ int tool_run(int count, char **arguments) {
                          optind < count ? "one scene at a time" : "the name of a scene is missing");
     }
     options.source.scene = arguments[optind];
+    if (options.time_budget > 0 && options.source.build.error_budget == 0) { /* as exact as there is time for */
+        options.source.build.error_budget = (float)(1e-3 * SOURCE_LEAST_ERROR_MM);
+    }
     source from;
     int status = source_open(&from, &options.source);
     if (status == 0) {

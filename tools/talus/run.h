@@ -10,6 +10,7 @@ typedef struct run_options {
     source_options source;
     const char *out, *animate;
     int json, profile, quiet;
+    double time_budget; /* s a step; 0: none */
 } run_options;
 
 /* Times are ms. */
@@ -27,8 +28,13 @@ typedef struct run_result {
     uint64_t manifolds_made, manifolds_kept, contacts_sleeping, pairs_made, proxies_refit;
     skipped skips;
     uint64_t sensor_begins, sensor_ends;
-    talus_errors worst;       /* over the second half of the steps, when what falls has fallen */
-    uint32_t not_finite_step; /* the first one with a NaN or infinity in its states; 0: none */
+    talus_errors worst;                        /* over the second half of the steps, when what falls has fallen */
+    uint64_t substeps_given, awake_body_steps; /* over steps */
+    uint64_t steps_over, settled_over;         /* the error budget, of all and of the second half */
+    uint64_t steps_late;                       /* beyond the time budget */
+    uint32_t substeps_least, substeps_most;
+    float worst_error, settled_error; /* m: as the error budget counts it, of all steps and of the second half */
+    uint32_t not_finite_step;         /* the first one with a NaN or infinity in its states; 0: none */
     uint32_t substeps, iterations, isa;
 } run_result;
 

@@ -83,6 +83,20 @@ int source_take_option(int option, const char *text, source_options *out) {
         return number == 1 ? 0 : tool_fail(GLTF_UNSUPPORTED, "--threads: a step runs on one thread");
     case SOURCE_ISA:
         return source_isa(text, &out->build.isa);
+    case SOURCE_ERROR_BUDGET: {
+        double mm;
+        if (!source_number("--error-budget", text, "mm", SOURCE_LEAST_ERROR_MM, 1000, &mm)) {
+            return TOOL_USAGE;
+        }
+        out->build.error_budget = (float)(mm * 1e-3);
+        return 0;
+    }
+    case SOURCE_MOST_SUBSTEPS:
+        if (!source_whole("--most-substeps", text, 1, TALUS_MAX_SUBSTEPS, &number)) {
+            return TOOL_USAGE;
+        }
+        out->build.most_substeps = (uint32_t)number;
+        return 0;
     default:
         out->build.no_sleep = 1;
         return 0;

@@ -8,6 +8,7 @@
 #include <getopt.h>
 
 #define SOURCE_MAX_STEPS 10000000u
+#define SOURCE_LEAST_ERROR_MM 0.001
 
 typedef struct source_options {
     const char *scene; /* a path, or '@' and the name of an own scene */
@@ -25,6 +26,8 @@ enum {
     SOURCE_ISA,
     SOURCE_THREADS,
     SOURCE_NO_SLEEP,
+    SOURCE_ERROR_BUDGET,
+    SOURCE_MOST_SUBSTEPS,
     SOURCE_OPTION_COUNT
 };
 
@@ -34,7 +37,9 @@ enum {
     {"steps", required_argument, NULL, SOURCE_STEPS}, {"dt", required_argument, NULL, SOURCE_DT},                      \
     {"substeps", required_argument, NULL, SOURCE_SUBSTEPS}, {"threads", required_argument, NULL, SOURCE_THREADS},      \
     {"iterations", required_argument, NULL, SOURCE_ITERATIONS}, {"isa", required_argument, NULL, SOURCE_ISA},          \
-    {"no-sleep", no_argument, NULL, SOURCE_NO_SLEEP}
+    {"no-sleep", no_argument, NULL, SOURCE_NO_SLEEP},                                                                  \
+    {"error-budget", required_argument, NULL, SOURCE_ERROR_BUDGET},                                                    \
+    {"most-substeps", required_argument, NULL, SOURCE_MOST_SUBSTEPS}
 /* clang-format on */
 
 /* Nothing but the scene's own and the library's. */

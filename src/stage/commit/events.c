@@ -134,7 +134,7 @@ static void break_joints(tl_step *step) {
     }
 }
 
-void tl_stage_events(tl_step *step) {
+void tl_stage_touches(tl_step *step) {
     tl_header *h = step->h;
     for (uint32_t i = 0; i < h->groups; i++) {
         const tl_contact_group *g = &tl_group_pool(h)[i];
@@ -142,6 +142,10 @@ void tl_stage_events(tl_step *step) {
             group_events(h, g);
         }
     }
+}
+
+void tl_stage_events(tl_step *step) {
+    tl_header *h = step->h;
     if (h->event_shapes > 0) {
         for (uint32_t k = 0; k < h->awake_contacts; k++) {
             uint32_t c = tl_awake_contact(h)[k];

@@ -42,6 +42,29 @@ static void tie(tl_header *h, uint32_t a, uint32_t b) {
     }
 }
 
+void tl_islands_of_rows(tl_header *h) {
+    uint32_t *parent = tl_island_parent(h);
+    const uint32_t *rows = tl_body_row(h), *awake = tl_awake_body(h);
+    for (uint32_t k = 0; k < h->awake_bodies; k++) {
+        parent[awake[k]] = awake[k];
+    }
+    for (uint32_t k = 0; k < h->awake_contacts; k++) {
+        const tl_contact_meta *m = &tl_contacts(h)[tl_awake_contact(h)[k]];
+        if ((m->flags & TL_CONTACT_COLORED) && rows[m->body_a] && rows[m->body_b]) {
+            unite(parent, m->body_a, m->body_b);
+        }
+    }
+    for (uint32_t k = 0; k < h->awake_joints; k++) {
+        const tl_joint_record *j = &tl_joints(h)[tl_awake_joint(h)[k]];
+        if (rows[j->body_a] && rows[j->body_b]) {
+            unite(parent, j->body_a, j->body_b);
+        }
+    }
+    for (uint32_t k = 0; k < h->awake_bodies; k++) {
+        parent[awake[k]] = find_root(parent, awake[k]);
+    }
+}
+
 /* island_parent and, at the roots, island_quiet: the least quiet time of the island. */
 static void find_islands(tl_header *h) {
     uint32_t *parent = tl_island_parent(h);

@@ -8,6 +8,10 @@
  * sleep those in which all have. O(awake bodies), with O(awake contacts) when something may sleep. */
 void tl_stage_sleep(tl_header *h, float dt);
 
+/* island_parent of all that share a row of the solver: moving kinematic bodies are in the islands of what they touch.
+ * O(awake bodies, contacts and joints). */
+void tl_islands_of_rows(tl_header *h);
+
 /* Puts the island of an awake dynamic body to sleep, however fast it is. */
 void tl_island_sleep(tl_header *h, uint32_t body);
 

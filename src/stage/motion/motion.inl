@@ -198,7 +198,7 @@ static void fly(const tl_step *step, uint32_t first, uint32_t last) {
         load_eight(tl_row_frame(step->h) + i, r.frame);
         load_eight(momenta + i, r.momentum);
         tl_m8 gyro = tl_f8_gt(r.frame[7], tl_f8_zero());
-        for (uint32_t k = 0; k < step->h->settings.substeps; k++) {
+        for (uint32_t k = 0; k < step->substeps; k++) {
             speed_up(step, &r, k == 0);
             move_on(step, &r, gyro);
         }

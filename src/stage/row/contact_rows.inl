@@ -128,7 +128,7 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
           sum = zero, ways = zero;
     tl_f8 fade = tl_f8_set1(1.0f / tl_max(step->h->settings.speculative_margin, 1e-6f));
     v8 sum_a = v8_zero(), sum_b = v8_zero(), arms[4];
-    tl_m8 deep = tl_m8_zero();
+    tl_f8 deepest = zero;
     tl_f8 weights[4];
     for (uint32_t p = 0; p < g->points; p++) {
         tl_contact_lane_point *out = &g->point[p];
@@ -147,7 +147,7 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
         v8_store(out->ja[0], ja);
         v8_store(out->jb[0], jb);
         tl_f8_store(out->gap, gap);
-        deep = tl_m8_or(deep, tl_m8_and(used, tl_f8_lt(gap, tl_f8_set1(-0.75f * PUSH_DEPTH))));
+        deepest = tl_f8_max(tl_f8_and_mask(used, tl_f8_neg(gap)), deepest);
         tl_f8_store(out->mass, tl_f8_and_mask(used, mass));
         tl_f8_store(out->impulse, tl_f8_and_mask(used, tl_f8_mul(r[6], tl_f8_set1(step->warm_scale))));
         tl_f8_store(out->peak, zero);
@@ -160,7 +160,8 @@ static void prepare_points(const tl_step *step, tl_contact_group *g, const conta
         sum_a = v8_mad(sum_a, weights[p], ra);
         sum_b = v8_mad(sum_b, weights[p], rb);
     }
-    g->depth = tl_m8_any(deep) ? TL_DEPTH_PUSHED : 0u;
+    tl_f8_store(g->deepest, deepest);
+    g->depth = tl_m8_any(tl_f8_gt(deepest, tl_f8_set1(0.75f * PUSH_DEPTH))) ? TL_DEPTH_PUSHED : 0u;
     tl_f8 scale = inverse_or_zero(sum);
     *center_a = v8_scale(sum_a, scale);
     *center_b = v8_scale(sum_b, scale);

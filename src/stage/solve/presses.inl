@@ -378,7 +378,9 @@ static void press_velocities(const tl_step *step, uint32_t first, uint32_t last)
 /* Fills in how far the points that hold are to be parted; returns whether any is. */
 static int read_depths(const tl_step *step, const tl_press *s) {
     const tl_header *h = step->h;
-    tl_f8 zero = tl_f8_zero(), most = tl_f8_set1(h->settings.push_speed * step->sub), left = tl_f8_set1(PRESS_DEPTH);
+    float budget = h->settings.error_budget;
+    tl_f8 zero = tl_f8_zero(), most = tl_f8_set1(h->settings.push_speed * step->sub);
+    tl_f8 left = tl_f8_set1(budget > 0.0f ? tl_min(PRESS_DEPTH, 0.5f * budget) : PRESS_DEPTH);
     tl_m8 any = tl_m8_zero();
     for (uint32_t k = 0; k < s->count; k++) {
         const tl_pressed *p = &tl_pressed_pool(h)[s->first + k];

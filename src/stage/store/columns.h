@@ -21,6 +21,7 @@
     X(body_motion, uint32_t, BODY, COMMIT, STATE, 4)                                                                   \
     X(bodies, tl_body_meta, BODY, COMMANDS, STATE, 4)                                                                  \
     X(body_quiets, tl_body_quiet, BODY, SLEEP, STATE, 4)                                                               \
+    X(body_efforts, tl_body_effort, BODY, COMMIT, STATE, 4)                                                            \
     X(body_colors, uint64_t, BODY, ISLANDS, INDEX, 8)                                                                  \
     X(body_mass, talus_mass, BODY, COMMANDS, STATE, 4)                                                                 \
     X(body_user, uint64_t, BODY, COMMANDS, STATE, 8)                                                                   \

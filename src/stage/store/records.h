@@ -51,6 +51,12 @@ typedef struct tl_body_quiet {
     float speed; /* m/s, when half of the time was over */
 } tl_body_quiet;
 
+/* What the body's island gets under an error budget. */
+typedef struct tl_body_effort {
+    uint32_t level; /* sub-steps: the settings' times two to the level */
+    float calm;     /* s: that the errors were far below the budget; below 0: until more is given again */
+} tl_body_effort;
+
 /* shape_meta.flags */
 enum { TL_SHAPE_ALIVE = 1, TL_SHAPE_SENSOR = 2, TL_SHAPE_EVENTS = 4 };
 

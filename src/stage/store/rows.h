@@ -52,6 +52,7 @@ typedef struct tl_contact_group {
     uint32_t pressed;           /* bits of lanes that are in a press */
     uint32_t plane;             /* the axis across which all bodies stay, plus one; 0 if they need not */
     uint32_t reserved[7];       /* lanes are aligned */
+    float deepest[TL_LANES];    /* m: overlap when the step began, of a lane's deepest point */
     float normal[3][TL_LANES];  /* from a to b */
     float tangent[3][TL_LANES]; /* the second tangent is normal x tangent */
     float ja1[3][TL_LANES], jb1[3][TL_LANES], ja2[3][TL_LANES], jb2[3][TL_LANES];

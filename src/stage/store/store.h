@@ -60,11 +60,12 @@ typedef enum tl_count {
 /* The settings of talus_world_def in members of four bytes. */
 typedef struct tl_settings {
     talus_vec3 gravity;
-    uint32_t substeps, iterations;
+    uint32_t substeps, iterations, most_substeps;
+    float error_budget;
     float contact_hertz, contact_damping_ratio, push_speed;
     float speculative_margin, recycle_slack, restitution_speed, hit_speed, sleep_speed, sleep_time;
     uint32_t enable_sleep;
-    float substep; /* s, of the last step: scales the impulses that the next one starts from */
+    float substep; /* s, of the last step, of islands without more: scales the impulses that the next one starts from */
 } tl_settings;
 
 /* A pool: slots in use are below `high`; freed ones form a list. */
