@@ -28,10 +28,10 @@ static int has_budget(const tl_step *step) { return step->h->settings.error_budg
 
 static void find_islands(tl_step *step) {
     tl_header *h = step->h;
-    float *errors = tl_island_quiet(h);
+    float *errors = tl_island_quiet(h), *unlifted = tl_island_unlifted(h);
     tl_islands_of_rows(h);
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
-        errors[tl_awake_body(h)[k]] = 0.0f;
+        errors[tl_awake_body(h)[k]] = unlifted[tl_awake_body(h)[k]] = 0.0f;
     }
     step->has_islands = 1;
 }
@@ -208,10 +208,12 @@ static float joint_error(const tl_header *h, const tl_joint_group *g, uint32_t l
     return tl_max(sqrtf(way), sqrtf(turn) * reach);
 }
 
-/* Gives the error of what stands in a lane to the island of its bodies. */
-static void give_error(const tl_header *h, uint32_t a, uint32_t b, float error) {
-    float *of = &tl_island_quiet(h)[tl_island_parent(h)[tl_awake_body(h)[(a ? a : b) - 1u]]];
-    *of = tl_max(error, *of);
+/* Gives the error of what stands in a lane to the island of its bodies, and what it would be without lifts: those have
+ * to grow anew at a lower level. */
+static void give_error(const tl_header *h, uint32_t a, uint32_t b, float error, float lift) {
+    uint32_t root = tl_island_parent(h)[tl_awake_body(h)[(a ? a : b) - 1u]];
+    tl_island_quiet(h)[root] = tl_max(error, tl_island_quiet(h)[root]);
+    tl_island_unlifted(h)[root] = tl_max(error + lift, tl_island_unlifted(h)[root]);
 }
 
 static float note_contacts(const tl_header *h, int give) {
@@ -221,7 +223,7 @@ static float note_contacts(const tl_header *h, int give) {
         for (uint32_t k = 0; k < g->lanes; k++) {
             worst = tl_max(g->deepest[k], worst);
             if (give && (g->a[k] | g->b[k])) {
-                give_error(h, g->a[k], g->b[k], g->deepest[k]);
+                give_error(h, g->a[k], g->b[k], g->deepest[k], g->lift[k]);
             }
         }
     }
@@ -236,7 +238,7 @@ static float note_joints(const tl_header *h, int give) {
             float error = joint_error(h, g, k);
             worst = tl_max(error, worst);
             if (give && (g->a[k] | g->b[k])) {
-                give_error(h, g->a[k], g->b[k], error);
+                give_error(h, g->a[k], g->b[k], error, 0.0f);
             }
         }
     }
@@ -272,8 +274,8 @@ void tl_efforts_note(tl_step *step) {
 
 /* --- the next step ---------------------------------------------------------------------------- */
 
-static void adjust(tl_body_effort *e, float error, float budget, uint32_t most, float dt) {
-    float higher = error * (LEVEL_WORTH * MARGIN); /* at the next lower level */
+static void adjust(tl_body_effort *e, float error, float unlifted, float budget, uint32_t most, float dt) {
+    float higher = unlifted * (LEVEL_WORTH * MARGIN); /* at the next lower level */
     if (error > budget && e->calm >= 0.0f && e->level < most) {
         e->level++;
         e->calm = -RAISE_AFTER;
@@ -308,9 +310,9 @@ void tl_efforts_end(tl_step *step) {
     uint32_t most = most_level(s);
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         if (parent[awake[k]] == awake[k]) {
-            float error = tl_island_quiet(h)[awake[k]];
+            float error = tl_island_quiet(h)[awake[k]], unlifted = tl_island_unlifted(h)[awake[k]];
             h->counters.islands_over += error > s->error_budget;
-            adjust(&efforts[awake[k]], error, s->error_budget, most, step->dt);
+            adjust(&efforts[awake[k]], error, unlifted, s->error_budget, most, step->dt);
         }
     }
     for (uint32_t k = 0; k < h->awake_bodies; k++) {

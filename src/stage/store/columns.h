@@ -77,6 +77,7 @@
     X(row_force, tl_row8, ROW, ROWS, STEP, 4)                                                                          \
     X(island_parent, uint32_t, BODY, ISLANDS, STEP, 4)                                                                 \
     X(island_quiet, float, BODY, ISLANDS, STEP, 4)                                                                     \
+    X(island_unlifted, float, BODY, ISLANDS, STEP, 4)                                                                  \
     X(contact_order, uint32_t, CONTACT, ROWS, STEP, 4)                                                                 \
     X(row_planes, uint32_t, ROW, ROWS, STEP, 4)                                                                        \
     X(contact_plane, uint32_t, CONTACT, ROWS, STEP, 4)                                                                 \
