@@ -11,7 +11,7 @@
 #include "world/world_internal.h"
 
 #define SNAPSHOT_MAGIC 0x50534c54u /* "TLSP" */
-#define SNAPSHOT_VERSION 3u
+#define SNAPSHOT_VERSION 4u
 
 /* Words of the head: magic, version, bytes, checksum (low, high), then the capacities. */
 enum { HEAD_MAGIC, HEAD_VERSION, HEAD_BYTES, HEAD_SUM, HEAD_SUM_HIGH, HEAD_CAPACITY, HEAD_WORDS = HEAD_CAPACITY + 5 };
