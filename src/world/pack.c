@@ -6,7 +6,7 @@
 #define BLOCK 32u /* bytes */
 #define RUN 256u
 #define MANY 8u     /* runs */
-#define AHEAD 1536u /* bytes that are asked for early */
+#define AHEAD 4096u /* bytes that are asked for early */
 
 /* The word of a block that comes k-th: of members of eight bytes the low half comes first. */
 static size_t place_of(size_t k, size_t word) { return word == 8u && tl_high_byte_first() ? k ^ 1u : k; }
@@ -192,11 +192,6 @@ static void put_marks(tl_marks *marks, size_t at, size_t stride, uint32_t words)
     if (!marks->first) {
         return;
     }
-    if (stride == BLOCK) { /* a block is a row */
-        uint32_t *m = marks->first + at / BLOCK * marks->stride;
-        *m = *m < marks->value ? marks->value : *m;
-        return;
-    }
     for (size_t row = at / stride; row * stride < at + BLOCK; row++) {
         size_t from = row * stride < at ? 0 : row * stride - at, to = least(BLOCK, (row + 1u) * stride - at);
         uint32_t *m = marks->first + row * marks->stride;
@@ -265,7 +260,11 @@ static const unsigned char *unpack_run(const unsigned char *p, uint32_t blocks, 
         p += is;
         uint32_t other = unpack_words(p, data + at, stride, mask);
         p += 4u * count_of(mask);
-        if (other) {
+        if (other && stride == BLOCK) { /* a block is a row */
+            uint32_t none = 0, *m = marks->first ? marks->first + at / BLOCK * marks->stride : &none;
+            marks->count++;
+            *m = *m < marks->value ? marks->value : *m;
+        } else if (other) {
             put_marks(marks, at, stride, other);
         }
     }
