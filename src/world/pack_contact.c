@@ -10,6 +10,7 @@
 
 #include "base/bits.h"
 #include "base/bytes.h"
+#include "base/prefetch.h"
 
 /* Where the parts of a code are: count (3 bits), colour (7), flags (8), whether friction or twist are not 0 (1), words
  * of the cache (3), whether ids need 4 bytes and not 3 (1), signs (4). */
@@ -18,6 +19,7 @@ enum { AT_COLOR = 3, AT_FLAGS = 10, AT_RUBS = 18, AT_CACHE = 19, AT_WIDE = 22, A
 #define POINTS TL_MANIFOLD_POINTS
 #define POINT 32u                                         /* bytes of a point at most */
 #define MOST (4u + 8u + 16u + 16u + 16u + POINT * POINTS) /* bytes of a contact */
+#define AHEAD 2048u                                       /* bytes that are asked for early */
 static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 #define SIGNS 0x8000000080000000u
@@ -102,6 +104,8 @@ unsigned char *tl_pack_contacts(unsigned char *p, const tl_header *h) {
     for (uint32_t w = 0, words = tl_bit_words(h->contacts.high); w < words; w++) {
         p = tl_put_word(tl_put_word(p, (uint32_t)alive[w]), (uint32_t)(alive[w] >> 32));
         for (uint64_t word = alive[w]; word; word &= word - 1u) {
+            tl_prefetch((const void *)((uintptr_t)p + AHEAD)); /* what is written has to be fetched, too */
+            tl_prefetch((const void *)((uintptr_t)p + AHEAD + 64u));
             p = put_contact(p, &s, 64u * w + tl_bit_lowest(word));
         }
     }
