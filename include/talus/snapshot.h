@@ -14,7 +14,8 @@ extern "C" {
 size_t talus_world_save_size(const talus_world *world);
 
 /* Writes a snapshot to `out`, of `bytes` >= talus_world_save_size, and its size to `written`. The bytes are the same on
- * every machine. Without the geometry. O(live rows). TALUS_SMALL_BLOCK. */
+ * every machine. Without the geometry. The block keeps what was written of masses, shapes and materials, for the next
+ * time: one world is saved by one thread at a time. O(live rows). TALUS_SMALL_BLOCK. */
 talus_status talus_world_save(const talus_world *world, void *out, size_t bytes, size_t *written);
 
 /* Puts a world of the same capacities back to a snapshot. Handles from before the snapshot hold again; those of objects

@@ -30,6 +30,12 @@ static inline uint32_t tl_bit_count(uint64_t word) {
 /* The members of one word, counted from `first`, ascending, into `out`; returns how many there are. */
 static inline uint32_t tl_bit_members(uint64_t word, uint32_t first, uint32_t *out) {
     uint32_t count = 0;
+    if (!~word) { /* as dense sets mostly are */
+        for (; count < 64u; count++) {
+            out[count] = first + count;
+        }
+        return count;
+    }
     for (; word; word &= word - 1u) {
         out[count++] = first + tl_bit_lowest(word);
     }

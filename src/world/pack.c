@@ -1,10 +1,12 @@
 #include "world/pack.h"
 
-#include "base/bits.h"
+#include "base/prefetch.h"
+#include "collide/lanes.h"
 
 #define BLOCK 32u /* bytes */
 #define RUN 256u
-#define MANY 8u /* runs */
+#define MANY 8u     /* runs */
+#define AHEAD 4096u /* bytes that are asked for early */
 
 /* The word of a block that comes k-th: of members of eight bytes the low half comes first. */
 static size_t place_of(size_t k, size_t word) { return word == 8u && tl_high_byte_first() ? k ^ 1u : k; }
@@ -14,17 +16,18 @@ static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 /* Bytes from the first on that have no row before them, in whole blocks. */
 static size_t first_of(size_t stride) { return (stride + BLOCK - 1u) / BLOCK * BLOCK; }
 
+/* Eight words of a row, which lie where words may. */
+static tl_i8 words_at(const unsigned char *p) { return tl_i8_loadu((const int32_t *)(const void *)p); }
+
 /* Which words of two whole blocks differ. */
-static uint32_t difference(const unsigned char *now, const unsigned char *before) {
-    uint32_t mask = 0;
-    for (unsigned k = 0; k < 4u; k++) {
-        uint64_t a, b;
-        memcpy(&a, now + 8u * k, 8);
-        memcpy(&b, before + 8u * k, 8);
-        uint64_t x = a ^ b;
-        mask |= ((uint32_t)((uint32_t)x != 0) | (uint32_t)(x >> 32 != 0) << 1) << 2u * k;
-    }
-    return mask;
+static uint32_t difference(tl_i8 a, tl_i8 b) { return tl_m8_bits(tl_i8_eq(a, b)) ^ 0xffu; }
+
+/* Whether they are the first ones, or none. */
+static int are_first(uint32_t mask) { return (mask & (mask + 1u)) == 0; }
+
+static uint32_t count_of(uint32_t mask) {
+    static const uint8_t count[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+    return count[mask & 15u] + count[mask >> 4];
 }
 
 /* What is expected of a word: as a row before, or where rows count, as much more than that as that was more than the
@@ -86,17 +89,6 @@ static unsigned char *pack_block(unsigned char *p, const unsigned char *now, con
     if (earlier && bytes == BLOCK && counts_on(now, before, earlier)) {
         return p;
     }
-    if (!earlier && before && bytes == BLOCK && !tl_high_byte_first()) { /* the usual cases by whole copies */
-        uint32_t mask = difference(now, before);
-        if (mask == 0) {
-            return p;
-        }
-        *p = (unsigned char)mask;
-        if ((mask & (mask + 1u)) == 0) {
-            memcpy(p + 1, now, BLOCK);
-            return p + 1 + 4u * tl_bit_count(mask);
-        }
-    }
     uint32_t mask = 0;
     unsigned char *q = p + 1;
     for (size_t k = 0; k < bytes / 4u; k++) {
@@ -123,23 +115,62 @@ static rows_before before_of(const unsigned char *data, size_t at, size_t stride
     return r;
 }
 
+/* A whole run of rows that do not count, with rows before all of it, on a machine that keeps the lowest byte first:
+ * what most runs are. */
+static unsigned char *pack_run(unsigned char *p, const unsigned char *now, size_t stride) {
+    unsigned char *blocks = p++;
+    uint32_t differ = 0;
+    for (unsigned k = 0; k < RUN / BLOCK; k++, now += BLOCK) {
+        uint32_t mask = difference(words_at(now), words_at(now - stride));
+        if (mask == 0) {
+            continue;
+        }
+        differ |= 1u << k;
+        *p++ = (unsigned char)mask;
+        if (are_first(mask)) { /* as a rule */
+            memcpy(p, now, BLOCK);
+            p += 4u * count_of(mask);
+            continue;
+        }
+        for (unsigned w = 0; w < BLOCK / 4u; w++) {
+            memcpy(p, now + 4u * w, 4);
+            p += mask >> w & 1u ? 4 : 0;
+        }
+    }
+    *blocks = (unsigned char)differ;
+    return p;
+}
+
+/* Whether runs from a place on are packed and unpacked block by block of lanes. */
+static int is_plain(size_t at, size_t stride, int counting) {
+    return !counting && has_before(at, stride, 0) && !tl_high_byte_first();
+}
+
 unsigned char *tl_pack_rows(unsigned char *p, const void *rows, size_t count, size_t stride, size_t word,
                             int counting) {
     const unsigned char *data = rows;
     size_t bytes = count * stride;
+    int on = 1; /* the run before went on */
     for (size_t at = 0; at < bytes;) {
-        if (many_go_on(data, at, bytes, stride, counting)) {
+        if (on && many_go_on(data, at, bytes, stride, counting)) {
             memset(p, 0, MANY);
             p += MANY, at += MANY * RUN;
             continue;
         }
         size_t run = least(RUN, bytes - at);
-        unsigned char *blocks = p++;
-        *blocks = 0;
-        if (run == RUN && has_before(at, stride, counting) && run_goes_on(data + at, stride, counting)) {
+        on = run == RUN && has_before(at, stride, counting) && run_goes_on(data + at, stride, counting);
+        if (on) {
+            *p++ = 0;
             at += run;
             continue;
         }
+        if (run == RUN && is_plain(at, stride, counting)) {
+            p = pack_run(p, data + at, stride);
+            at += run;
+            continue;
+        }
+        unsigned char *blocks = p++;
+        *blocks = 0;
         for (unsigned k = 0; k < RUN / BLOCK && at < bytes; k++, at += least(BLOCK, bytes - at)) {
             rows_before r = before_of(data, at, stride, counting);
             unsigned char *q = pack_block(p, data + at, r.before, r.earlier, least(BLOCK, bytes - at), word);
@@ -170,35 +201,11 @@ static void put_marks(tl_marks *marks, size_t at, size_t stride, uint32_t words)
     }
 }
 
-/* A whole block of which the first `count` words stand at p and the others are those of the row before; returns whether
- * that changes it. */
-static int unpack_first_words(const unsigned char *p, unsigned char *to, const unsigned char *before, uint32_t count) {
-    static const uint32_t number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    uint32_t w[8], b[8], was[8], other = 0;
-    memcpy(w, p, BLOCK);
-    memcpy(b, before, BLOCK);
-    memcpy(was, to, BLOCK);
-    for (unsigned k = 0; k < 8u; k++) {
-        w[k] = number[k] < count ? w[k] : b[k];
-        other |= w[k] ^ was[k];
-    }
-    if (other) { /* the next row waits for what is written here */
-        memcpy(to, w, BLOCK);
-    }
-    return other != 0;
-}
-
 /* Puts a block in its place: words of `mask` from p, the others from the row before. Returns where it ended, or null;
  * *other are the words that this changes, or all of them. */
 static const unsigned char *unpack_block(const unsigned char *p, const unsigned char *end, unsigned char *to,
-                                         rows_before rows, size_t stride, size_t bytes, size_t word, uint32_t mask,
-                                         uint32_t *other) {
-    if (bytes == BLOCK && (mask & (mask + 1u)) == 0 && !rows.earlier && rows.before && stride >= BLOCK &&
-        end - p >= (ptrdiff_t)BLOCK && !tl_high_byte_first()) { /* the usual case by whole copies */
-        *other = unpack_first_words(p, to, rows.before, tl_bit_count(mask)) ? 0xffu : 0u;
-        return p + 4u * tl_bit_count(mask);
-    }
-    if (end - p < (ptrdiff_t)(4u * tl_bit_count(mask))) {
+                                         rows_before rows, size_t bytes, size_t word, uint32_t mask, uint32_t *other) {
+    if (end - p < (ptrdiff_t)(4u * count_of(mask))) {
         return NULL;
     }
     *other = 0;
@@ -218,21 +225,75 @@ static const unsigned char *unpack_block(const unsigned char *p, const unsigned 
     return p;
 }
 
+/* A whole block whose row before is there; words of `mask` from p. Returns the words that this changes. */
+static uint32_t unpack_words(const unsigned char *p, unsigned char *to, size_t stride, uint32_t mask) {
+    int32_t now[BLOCK / 4u];
+    uint32_t other;
+    if (mask == 0xffu || (stride >= BLOCK && are_first(mask))) { /* as a rule */
+        memcpy(now, p, BLOCK);
+        tl_i8 all = tl_i8_select(tl_m8_from_bits(mask), tl_i8_loadu(now), words_at(to - stride));
+        other = difference(all, words_at(to));
+        if (other) { /* the next row waits for what is written here */
+            tl_i8_storeu((int32_t *)(void *)to, all);
+        }
+        return other;
+    }
+    other = 0;
+    for (unsigned k = 0; k < BLOCK / 4u; k++, to += 4) { /* the row before may lie in this very block */
+        uint32_t w, was, from_p = mask >> k & 1u;
+        memcpy(&w, from_p ? p : to - stride, 4);
+        memcpy(&was, to, 4);
+        memcpy(to, &w, 4);
+        p += 4u * from_p;
+        other |= (uint32_t)(w != was) << k;
+    }
+    return other;
+}
+
+#define MOST_OF_RUN (RUN + RUN / BLOCK) /* bytes after the first */
+
+/* What pack_run wrote, of which MOST_OF_RUN bytes can be read. */
+static const unsigned char *unpack_run(const unsigned char *p, uint32_t blocks, unsigned char *data, size_t at,
+                                       size_t stride, tl_marks *marks) {
+    for (unsigned k = 0; k < RUN / BLOCK; k++, at += BLOCK) {
+        uint32_t is = blocks >> k & 1u, mask = *p & (0u - is);
+        p += is;
+        uint32_t other = unpack_words(p, data + at, stride, mask);
+        p += 4u * count_of(mask);
+        if (other && stride == BLOCK) { /* a block is a row */
+            uint32_t none = 0, *m = marks->first ? marks->first + at / BLOCK * marks->stride : &none;
+            marks->count++;
+            *m = *m < marks->value ? marks->value : *m;
+        } else if (other) {
+            put_marks(marks, at, stride, other);
+        }
+    }
+    return p;
+}
+
 const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char *end, void *rows, size_t count,
                                     size_t stride, size_t word, int counting, tl_marks *marks) {
     unsigned char *data = rows;
     size_t bytes = count * stride;
+    int on = 1; /* the run before went on, as it was */
     for (size_t at = 0; at < bytes;) {
         if (p >= end) {
             return NULL;
         }
-        if (end - p >= (ptrdiff_t)MANY && tl_get_long_word(p) == 0 && many_go_on(data, at, bytes, stride, counting)) {
-            p += MANY, at += MANY * RUN; /* as it should be */
+        if (on && end - p >= (ptrdiff_t)MANY && tl_get_long_word(p) == 0 &&
+            many_go_on(data, at, bytes, stride, counting)) {
+            p += MANY, at += MANY * RUN;
             continue;
         }
         uint32_t blocks = *p++;
         size_t run = least(RUN, bytes - at);
-        if (blocks == 0 && run == RUN && has_before(at, stride, counting) && run_goes_on(data + at, stride, counting)) {
+        on = blocks == 0 && run == RUN && has_before(at, stride, counting) && run_goes_on(data + at, stride, counting);
+        if (on) {
+            at += run;
+            continue;
+        }
+        if (run == RUN && is_plain(at, stride, counting) && end - p >= (ptrdiff_t)MOST_OF_RUN) {
+            p = unpack_run(p, blocks, data, at, stride, marks);
             at += run;
             continue;
         }
@@ -244,8 +305,8 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
                 }
                 mask = *p++;
             }
-            p = unpack_block(p, end, data + at, before_of(data, at, stride, counting), stride, least(BLOCK, bytes - at),
-                             word, mask, &other);
+            p = unpack_block(p, end, data + at, before_of(data, at, stride, counting), least(BLOCK, bytes - at), word,
+                             mask, &other);
             if (!p) {
                 return NULL;
             }
@@ -263,15 +324,18 @@ static uint64_t long_word(const unsigned char *p) {
     return tl_high_byte_first() ? tl_get_long_word(p) : w;
 }
 
-/* Sums of words of eight bytes and sums of those sums in four interleaved streams: Fletcher, "An arithmetic checksum
- * for serial transmissions", IEEE Trans. Communications 30(1), 1982. */
+#define STREAMS 4u
+
+/* Sums of words of eight bytes and sums of those sums in interleaved streams: Fletcher, "An arithmetic checksum for
+ * serial transmissions", IEEE Trans. Communications 30(1), 1982. */
 uint64_t tl_pack_checksum(const unsigned char *p, size_t bytes) {
-    uint64_t sum[4] = {1, 2, 3, 4}, sums[4] = {0, 0, 0, 0};
+    uint64_t sum[STREAMS] = {1, 2, 3, 4}, sums[STREAMS] = {0, 0, 0, 0};
     size_t at = 0;
-    for (; bytes - at >= 32u; at += 32u) {
-        for (unsigned k = 0; k < 4u; k++) {
-            sum[k] += long_word(p + at + 8u * k);
-            sums[k] += sum[k];
+    for (; bytes - at >= 16u * STREAMS; at += 16u * STREAMS) { /* two words a stream */
+        tl_prefetch((const void *)((uintptr_t)(p + at) + AHEAD));
+        for (unsigned k = 0; k < 2u * STREAMS; k++) {
+            sum[k % STREAMS] += long_word(p + at + 8u * k);
+            sums[k % STREAMS] += sum[k % STREAMS];
         }
     }
     for (; at < bytes; at++) {
@@ -279,7 +343,7 @@ uint64_t tl_pack_checksum(const unsigned char *p, size_t bytes) {
         sums[0] += sum[0];
     }
     uint64_t mix = bytes;
-    for (unsigned k = 0; k < 4u; k++) {
+    for (unsigned k = 0; k < STREAMS; k++) {
         mix = (mix ^ sum[k]) * 0x9e3779b97f4a7c15u;
         mix ^= mix >> 29;
         mix = (mix ^ sums[k]) * 0x9e3779b97f4a7c15u;

@@ -10,6 +10,7 @@
 
 #include "base/bits.h"
 #include "base/bytes.h"
+#include "base/prefetch.h"
 
 /* Where the parts of a code are: count (3 bits), colour (7), flags (8), whether friction or twist are not 0 (1), words
  * of the cache (3), whether ids need 4 bytes and not 3 (1), signs (4), whether there is a lift (1). */
@@ -18,6 +19,7 @@ enum { AT_COLOR = 3, AT_FLAGS = 10, AT_RUBS = 18, AT_CACHE = 19, AT_WIDE = 22, A
 #define POINTS TL_MANIFOLD_POINTS
 #define POINT 32u                                              /* bytes of a point at most */
 #define MOST (4u + 8u + 16u + 16u + 4u + 16u + POINT * POINTS) /* bytes of a contact */
+#define AHEAD 2048u                                            /* bytes that are asked for early */
 static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 #define SIGNS 0x8000000080000000u
@@ -53,9 +55,8 @@ static uint32_t cache_words(const tl_pair_cache *cache) {
     return cache->word[3] ? 4u : words;
 }
 
-/* The signs of two floats of a pair, and back. */
+/* The signs of two floats of a pair. */
 static uint32_t signs_of(uint64_t pair) { return (uint32_t)(((pair & SIGNS) | (pair & SIGNS) << 31) >> 62); }
-static uint64_t with_signs(uint32_t signs) { return (uint64_t)(signs & 1u) << 31 | (uint64_t)(signs & 2u) << 62; }
 
 /* Friction and twist as two pairs of floats, the first of each lowest. */
 static uint64_t pair_of(const uint32_t *words) { return words[0] | (uint64_t)words[1] << 32; }
@@ -105,6 +106,8 @@ unsigned char *tl_pack_contacts(unsigned char *p, const tl_header *h) {
     for (uint32_t w = 0, words = tl_bit_words(h->contacts.high); w < words; w++) {
         p = tl_put_word(tl_put_word(p, (uint32_t)alive[w]), (uint32_t)(alive[w] >> 32));
         for (uint64_t word = alive[w]; word; word &= word - 1u) {
+            tl_prefetch((const void *)((uintptr_t)p + AHEAD)); /* what is written has to be fetched, too */
+            tl_prefetch((const void *)((uintptr_t)p + AHEAD + 64u));
             p = put_contact(p, &s, 64u * w + tl_bit_lowest(word));
         }
     }
@@ -118,11 +121,18 @@ static void get_point(const unsigned char *p, tl_contact_point_record *r, uint32
     r->id = turned_back(tl_get_word(p + 28) & id_mask);
 }
 
+#define S 0x80000000u
+static const uint32_t SIGNED[16][4] = {
+    {0, 0, 0, 0}, {S, 0, 0, 0}, {0, S, 0, 0}, {S, S, 0, 0}, {0, 0, S, 0}, {S, 0, S, 0}, {0, S, S, 0}, {S, S, S, 0},
+    {0, 0, 0, S}, {S, 0, 0, S}, {0, S, 0, S}, {S, S, 0, S}, {0, 0, S, S}, {S, 0, S, S}, {0, S, S, S}, {S, S, S, S}};
+
 /* Friction and twist, of which there is nothing but the signs if the contact does not rub. */
-static void get_friction(const unsigned char *p, float *friction, uint32_t code, uint64_t rubs) {
-    uint64_t f = (tl_get_long_word(p) & (0u - rubs)) | with_signs(code >> AT_SIGNS);
-    uint64_t g = (tl_get_long_word(p + 8) & (0u - rubs)) | with_signs(code >> (AT_SIGNS + 2));
-    uint32_t words[4] = {(uint32_t)f, (uint32_t)(f >> 32), (uint32_t)g, (uint32_t)(g >> 32)};
+static void get_friction(const unsigned char *p, float *friction, uint32_t signs, uint32_t rubs) {
+    uint32_t words[4];
+    tl_get_words(p, words, 4);
+    for (uint32_t i = 0; i < 4u; i++) {
+        words[i] = (words[i] & (0u - rubs)) | SIGNED[signs][i];
+    }
     memcpy(friction, words, 16);
 }
 
@@ -153,7 +163,7 @@ static const unsigned char *get_contact(const unsigned char *p, const slots *s, 
     }
     m->motion = tl_get_word(p);
     tl_get_words(p + 4, s->heads[contact].normal, 3);
-    get_friction(p + 16, s->heads[contact].friction, code, rubs);
+    get_friction(p + 16, s->heads[contact].friction, code >> AT_SIGNS & 15u, rubs);
     p += 16u + 16u * rubs;
     uint32_t cache[4], lift = tl_get_word(p) & (0u - lifted);
     memcpy(&s->heads[contact].lift, &lift, 4);
@@ -179,17 +189,6 @@ static const unsigned char *get_contact(const unsigned char *p, const slots *s, 
     return p + point * count;
 }
 
-/* The same where the bytes may end before. */
-static const unsigned char *get_last_contact(const unsigned char *p, const unsigned char *end, const slots *s,
-                                             tl_header *h, uint32_t contact) {
-    unsigned char bytes[MOST];
-    size_t left = (size_t)(end - p);
-    memset(bytes, 0, sizeof bytes);
-    memcpy(bytes, p, left);
-    const unsigned char *q = get_contact(bytes, s, h, contact);
-    return q && (size_t)(q - bytes) <= left ? p + (q - bytes) : NULL;
-}
-
 /* The contacts of one word of contact_alive, which was `was`. */
 static const unsigned char *get_word(const unsigned char *p, const unsigned char *end, const slots *s, tl_header *h,
                                      uint32_t w, tl_changes *changes) {
@@ -207,12 +206,26 @@ static const unsigned char *get_word(const unsigned char *p, const unsigned char
         tl_reindex_part_contact(h, contact);
         tl_contact_clear(h, contact);
     }
-    for (uint64_t word = *alive; word && p; word &= word - 1u) {
+    uint32_t others = changes->contacts;
+    unsigned char last[MOST];
+    for (uint64_t word = *alive; word; word &= word - 1u) {
         uint32_t contact = 64u * w + tl_bit_lowest(word);
-        p = (size_t)(end - p) < MOST ? get_last_contact(p, end, s, h, contact) : get_contact(p, s, h, contact);
-        order[changes->contacts] = contact;
-        changes->contacts += s->metas[contact].body_a == TL_NONE;
+        size_t left = (size_t)(end - p);
+        const unsigned char *from = p;
+        if (left < MOST) { /* the bytes may end before it does */
+            memset(last, 0, sizeof last);
+            memcpy(last, p, left);
+            from = last;
+        }
+        const unsigned char *to = get_contact(from, s, h, contact);
+        if (!to || (size_t)(to - from) > left) {
+            return NULL;
+        }
+        p += to - from;
+        order[others] = contact;
+        others += s->metas[contact].body_a == TL_NONE;
     }
+    changes->contacts = others;
     return p;
 }
 

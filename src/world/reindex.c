@@ -338,9 +338,10 @@ talus_status tl_reindex_end(tl_header *h, const tl_header *before, const tl_chan
     if (others_awake) {
         renew_awake(h);
     }
-    for (uint32_t k = 0; k < h->awake_bodies; k++) {
-        uint32_t i = tl_awake_body(h)[k];
-        tl_body_previous(h)[i] = tl_body_pose(h)[i];
+    for (uint32_t i = 0; i < h->bodies.high; i++) {
+        if (tl_body_row(h)[i]) {
+            tl_body_previous(h)[i] = tl_body_pose(h)[i];
+        }
     }
     tl_ties_changed(h);
     talus_status status;

@@ -35,6 +35,29 @@ static int is_packed(tl_column_id column) {
     }
 }
 
+/* Columns that only commands write, and none of those that act every frame (command.c). They come first, and what they
+ * were packed to is kept in the block: as long as that stands, nothing of them is read to save, and a snapshot that
+ * begins with the same bytes says the same of them. */
+static int is_definition(tl_column_id column) {
+    switch (column) {
+    case TL_COLUMN_body_inertias:
+    case TL_COLUMN_body_frame:
+    case TL_COLUMN_body_mass:
+    case TL_COLUMN_body_user:
+    case TL_COLUMN_shape_place:
+    case TL_COLUMN_shape_geometry:
+    case TL_COLUMN_shapes:
+    case TL_COLUMN_shape_material:
+    case TL_COLUMN_shape_category:
+    case TL_COLUMN_shape_mask:
+    case TL_COLUMN_shape_pose:
+    case TL_COLUMN_shape_user:
+        return 1;
+    default:
+        return 0;
+    }
+}
+
 /* Columns of indices, which mostly go up by one from row to row. */
 static int counts(tl_column_id column) { return column == TL_COLUMN_bodies || column == TL_COLUMN_shapes; }
 
@@ -63,11 +86,36 @@ size_t talus_world_save_size(const talus_world *world) {
     return tl_world_is_sound(world) ? most_bytes(tl_header_of(world)) : 0;
 }
 
+static unsigned char *put_columns(unsigned char *p, const tl_header *h, int definitions) {
+    for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
+        tl_column_id column = (tl_column_id)i;
+        tl_live live;
+        if (is_packed(column) && is_definition(column) == definitions && tl_store_state(h, column, &live)) {
+            p = tl_pack_rows(p, live.data, live.rows, live.row_bytes, live.word, counts(column));
+        }
+    }
+    return p;
+}
+
+static unsigned char *put_definitions(unsigned char *p, tl_header *h) {
+    if (h->defined) {
+        memcpy(p, tl_definitions(h), h->defined);
+        return p + h->defined;
+    }
+    unsigned char *end = put_columns(p, h, 1);
+    size_t bytes = (size_t)(end - p);
+    if (bytes <= h->capacity[TL_COUNT_DEFINITION] * sizeof(uint32_t)) {
+        memcpy(tl_definitions(h), p, bytes);
+        h->defined = (uint32_t)bytes;
+    }
+    return end;
+}
+
 talus_status talus_world_save(const talus_world *world, void *out, size_t bytes, size_t *written) {
     if (!tl_world_is_sound(world) || !out || !written) {
         return TALUS_BAD_ARGUMENT;
     }
-    const tl_header *h = tl_header_of(world);
+    tl_header *h = tl_header_of(world);
     if (bytes < talus_world_save_size(world)) {
         return TALUS_SMALL_BLOCK;
     }
@@ -78,12 +126,7 @@ talus_status talus_world_save(const talus_world *world, void *out, size_t bytes,
         tl_put_word(first + 4u * (HEAD_CAPACITY + i), h->capacity[CAPACITIES[i]]);
     }
     p = tl_put_words(p, state_of(h), state_words());
-    for (uint32_t i = 0; i < TL_COLUMN_COUNT; i++) {
-        tl_live live;
-        if (is_packed((tl_column_id)i) && tl_store_state(h, (tl_column_id)i, &live)) {
-            p = tl_pack_rows(p, live.data, live.rows, live.row_bytes, live.word, counts((tl_column_id)i));
-        }
-    }
+    p = put_columns(put_definitions(p, h), h, 0);
     size_t size = (size_t)(tl_pack_contacts(p, h) - first);
     tl_put_word(first + 4u * HEAD_BYTES, (uint32_t)size);
     uint64_t sum = tl_pack_checksum(first + HEAD_CHECKED, size - HEAD_CHECKED);
@@ -165,24 +208,34 @@ static void clear_rows(const tl_live *live, uint32_t was, tl_marks *marks) {
 }
 
 static const unsigned char *get_columns(const unsigned char *p, const unsigned char *end, tl_header *h,
-                                        const tl_header *before, tl_changes *changes) {
+                                        const tl_header *before, int definitions, tl_changes *changes) {
     for (uint32_t i = 0; i < TL_COLUMN_COUNT && p; i++) {
+        tl_column_id column = (tl_column_id)i;
         tl_live live;
-        if (!tl_store_state(h, (tl_column_id)i, &live)) {
+        if (is_definition(column) != definitions || !tl_store_state(h, column, &live)) {
             continue;
         }
         uint32_t *counter;
-        tl_marks marks = marks_of(h, (tl_column_id)i, changes, &counter);
-        clear_rows(&live, tl_store_live(before, (tl_column_id)i), &marks);
-        if (is_packed((tl_column_id)i)) {
-            p = tl_unpack_rows(p, end, live.data, live.rows, live.row_bytes, live.word, counts((tl_column_id)i),
-                               &marks);
+        tl_marks marks = marks_of(h, column, changes, &counter);
+        clear_rows(&live, tl_store_live(before, column), &marks);
+        if (is_packed(column)) {
+            p = tl_unpack_rows(p, end, live.data, live.rows, live.row_bytes, live.word, counts(column), &marks);
         }
         if (counter) {
             *counter += marks.count;
         }
     }
     return p;
+}
+
+static const unsigned char *get_definitions(const unsigned char *p, const unsigned char *end, tl_header *h,
+                                            const tl_header *before, tl_changes *changes) {
+    if (h->defined && h->bodies.high == before->bodies.high && h->shapes.high == before->shapes.high &&
+        (size_t)(end - p) >= h->defined && memcmp(p, tl_definitions(h), h->defined) == 0) {
+        return p + h->defined;
+    }
+    h->defined = 0;
+    return get_columns(p, end, h, before, 1, changes);
 }
 
 talus_status talus_world_restore(talus_world *world, const void *snapshot, size_t bytes) {
@@ -201,7 +254,10 @@ talus_status talus_world_restore(talus_world *world, const void *snapshot, size_
         tl_reindex_part_contact(h, c);
     }
     memcpy(state_of(h), state_of(&next), 4u * state_words());
-    p = get_columns(p + 4u * (HEAD_WORDS + state_words()), end, h, &before, &changes);
+    p = get_definitions(p + 4u * (HEAD_WORDS + state_words()), end, h, &before, &changes);
+    if (p) {
+        p = get_columns(p, end, h, &before, 0, &changes);
+    }
     if (p) {
         p = tl_unpack_contacts(p, end, h, &changes);
     }

@@ -11,6 +11,7 @@
 #include "stage/store/rows.h"
 
 #define TL_COLUMNS(X)                                                                                                  \
+    X(definitions, uint32_t, DEFINITION, COMMANDS, INDEX, 4)                                                           \
     /* bodies */                                                                                                       \
     X(body_pose, tl_row8, BODY, COMMIT, STATE, 4)                                                                      \
     X(body_velocity, tl_row8, BODY, COMMIT, STATE, 4)                                                                  \

@@ -53,6 +53,7 @@ uint32_t tl_store_layout(const talus_world_def *def, uint32_t capacity[TL_COUNT_
     capacity[TL_COUNT_PRESSED] = def->contact_capacity < TL_MOST_PRESSED ? def->contact_capacity : TL_MOST_PRESSED;
     capacity[TL_COUNT_PRESSBLOCK] = capacity[TL_COUNT_PRESSED] * TL_PRESS_BLOCKS;
     capacity[TL_COUNT_PRESSVALUE] = capacity[TL_COUNT_PRESSED] * TL_PRESS_VALUES;
+    capacity[TL_COUNT_DEFINITION] = (def->body_capacity + 1u + def->shape_capacity) * TL_DEFINITION_WORDS;
     capacity[TL_COUNT_EVENT] = def->event_capacity;
 #ifdef TALUS_NO_PROFILE
     capacity[TL_COUNT_FRAME] = 0;

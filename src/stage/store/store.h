@@ -28,6 +28,9 @@ typedef enum tl_column_id {
 #define TL_PRESS_BLOCKS 4u
 #define TL_PRESS_VALUES 192u
 
+/* Words of packed definitions, a body and a shape: more than bodies that differ in mass and shapes in size take. */
+#define TL_DEFINITION_WORDS 24u
+
 /* The capacities that the table's `count` names. */
 typedef enum tl_count {
     TL_COUNT_BODY,
@@ -50,6 +53,7 @@ typedef enum tl_count {
     TL_COUNT_PRESSED,
     TL_COUNT_PRESSBLOCK,
     TL_COUNT_PRESSVALUE,
+    TL_COUNT_DEFINITION,
     TL_COUNT_EVENT,
     TL_COUNT_OF_STATE, /* worlds that agree in those above have one layout of the state */
     TL_COUNT_TALLY = TL_COUNT_OF_STATE,
@@ -93,6 +97,8 @@ typedef struct tl_header {
     tl_pool nodes, pairs;
     uint32_t root[2]; /* of the trees: moving, still */
     uint32_t moved_shapes, awake_bodies, awake_pairs, awake_contacts, awake_joints;
+    uint32_t
+        defined; /* bytes in `definitions`: what snapshots have of the columns that only commands write; 0: unknown */
     uint32_t doubted; /* not 0: some awake body has TL_WAY_DOUBTED */
     talus_counters counters;
     tl_event_counts events;
