@@ -143,9 +143,6 @@ void tl_stage_body_rows(tl_step *step) {
             add_force(h, body, row);
         }
     }
-    for (uint32_t row = used; row < step->rows; row++) {
-        rest_row(h, row);
-    }
 }
 
 void tl_stage_locks(tl_step *step) {

@@ -1,4 +1,5 @@
-/* Body rows of bodies that fall and turn freely, eight at a time; others are filled one by one (bodies.c). */
+/* Body rows of bodies that fall and turn freely, eight at a time; others are filled one by one (bodies.c). Rows that no
+ * body has are those of body 0, which nothing moves. */
 
 /* K stays as it is for a step, but the gyroscopic term follows the turning body. Where a joint ties the two together
  * they must not differ by more than this share. */
