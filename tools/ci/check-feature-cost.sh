@@ -10,7 +10,7 @@ set -eu
 CC=${CC:-gcc}
 dir=${BUILD:-build}/feature-cost
 mkdir -p "$dir"
-make --no-print-directory -s CC="$CC" BUILD="$dir" OPT="-O3 -g" tool >"$dir/log" 2>&1 || {
+make --no-print-directory -s -j"${JOBS:-2}" CC="$CC" BUILD="$dir" OPT="-O3 -g" tool >"$dir/log" 2>&1 || {
     tail -20 "$dir/log"
     exit 1
 }
