@@ -7,6 +7,7 @@
 #include "collide/advance.h"
 
 #define MAX_QUERIES 1000u
+#define MAX_LEVEL 52u
 #define NOISE 4e-6 /* of the sizes: several times what a distance may be wrong by */
 
 /* Sine and cosine of x in [0, pi / 2] by their series, to the rounding of double. */
@@ -113,26 +114,34 @@ static void by_advancement(search *s, talus_contact_time *out) {
     }
 }
 
-/* Intervals of length 2^-level from the left; those before number `index` are free. */
+/*
+ * Intervals from the left, number `index` of those of length 2^-level; what lies before it is free.
+ * Levels end where a double still holds every bound of an interval.
+ */
 static void by_bisection(search *s, talus_contact_time *out) {
     tl_d3 closing = tl_d_sub(s->a->move, s->b->move);
     double most = tl_d_length(closing) + s->a->reach * s->a->angle + s->b->reach * s->b->angle;
-    double length = 1.0, from = 0.0;
-    while (from < 1.0) {
-        double half = 0.5 * length;
+    double length = 1.0;
+    uint64_t index = 0u;
+    uint32_t level = 0u;
+    while ((index >> level) == 0u) {
+        double from = (double)index * length, half = 0.5 * length;
         query(s, from + half);
         double along = tl_d_dot(closing, s->normal), speed = tl_d_max(along, -along) + turning(s, s->normal);
         if (s->near.apart && s->near.gap > speed * half + 0.25 * s->tolerance) {
-            from += length;
+            ++index;
             /* up while the interval is the left half of the next longer one */
-            while (length < 1.0 && from / (2.0 * length) == (double)(uint32_t)(from / (2.0 * length))) {
+            for (; level > 0u && index % 2u == 0u; --level) {
+                index /= 2u;
                 length *= 2.0;
             }
-        } else if (most * length <= 0.5 * s->tolerance || s->queries >= MAX_QUERIES) {
+        } else if (most * length <= 0.5 * s->tolerance || level == MAX_LEVEL || s->queries >= MAX_QUERIES) {
             query(s, from);
             report(s, s->near.gap <= s->tolerance ? TALUS_TIME_HIT : TALUS_TIME_UNFINISHED, from, out);
             return;
         } else {
+            index *= 2u;
+            ++level;
             length = half;
         }
     }

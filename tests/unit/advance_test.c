@@ -153,9 +153,34 @@ static void random_motions(void **state) {
     }
 }
 
+/* Small spheres from afar, at a speed that asks bisection for intervals of 2^-40 and shorter. */
+static void far_and_fast(void **state) {
+    (void)state;
+    static tl_moving a, b;
+    tl_convex ball;
+    memset(&ball, 0, sizeof ball);
+    ball.geometry.type = TALUS_SPHERE;
+    ball.geometry.radius = 0.01f;
+    talus_motion still, shot;
+    memset(&still, 0, sizeof still);
+    still.pose.rotation.w = 1.0f;
+    shot = still;
+    shot.pose.position.x = -1e5f;
+    shot.translation.x = 3e5f;
+    tl_moving_init(&a, &ball, &shot);
+    tl_moving_init(&b, &ball, &still);
+    for (int m = 0; m < 2; ++m) {
+        talus_feature_pair none = {0, 0};
+        talus_contact_time r;
+        tl_advance(&a, &b, 0.0f, 1.0, (talus_time_method)m, &none, &r);
+        assert_int_equal(r.status, TALUS_TIME_HIT);
+        assert_true(fabs(r.time * 3e5 - (1e5 - 0.02)) <= 1e-6);
+    }
+}
+
 int main(void) {
     brute_seed("advance_test");
     kit_build();
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_motions)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(random_motions), cmocka_unit_test(far_and_fast)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
