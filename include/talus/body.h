@@ -29,6 +29,11 @@ enum {
     TALUS_LOCK_PLANE_Z = 4 | 8 | 16
 };
 
+/* TALUS_LOCK_PLANE_X, _Y or _Z of axis 0, 1 or 2. */
+static inline uint32_t talus_lock_plane(uint32_t axis) {
+    return (uint32_t)TALUS_LOCK_LINEAR_X << axis | (7u ^ 1u << axis) * (uint32_t)TALUS_LOCK_ANGULAR_X;
+}
+
 typedef struct talus_body_def {
     talus_body_type type;
     talus_pose pose;             /* of the body's origin in the world; rotation of any length but 0 */

@@ -66,10 +66,11 @@ typedef struct command_info {
     talus_status (*run)(talus_world *world, uint32_t i, talus_command *c);
     const field *fields;
     target target;
+    int defines;
 } command_info;
 
 static const command_info COMMANDS[TALUS_COMMAND_COUNT] = {
-#define X(kind, name, target, fields) {#name, tl_run_##name, FIELDS_##fields, TARGET_##target},
+#define X(kind, name, target, fields, defines) {#name, tl_run_##name, FIELDS_##fields, TARGET_##target, defines},
     TL_COMMANDS(X)
 #undef X
 };
@@ -198,31 +199,6 @@ static talus_status find_target(const talus_world *world, const talus_command *c
     }
 }
 
-/* Whether it may write a column of what bodies and shapes are, not of where they are and what they do. */
-static int defines(talus_command_kind kind) {
-    switch (kind) {
-    case TALUS_COMMAND_WORLD_STEP:
-    case TALUS_COMMAND_WORLD_SET_GRAVITY:
-    case TALUS_COMMAND_WORLD_SET_ACCURACY:
-    case TALUS_COMMAND_BODY_SET_POSE:
-    case TALUS_COMMAND_BODY_MOVE_TO:
-    case TALUS_COMMAND_BODY_SET_VELOCITY:
-    case TALUS_COMMAND_BODY_APPLY_FORCE:
-    case TALUS_COMMAND_BODY_APPLY_TORQUE:
-    case TALUS_COMMAND_BODY_APPLY_IMPULSE:
-    case TALUS_COMMAND_BODY_APPLY_ANGULAR_IMPULSE:
-    case TALUS_COMMAND_BODY_SET_LOCKS:
-    case TALUS_COMMAND_BODY_WAKE:
-    case TALUS_COMMAND_BODY_SLEEP:
-    case TALUS_COMMAND_JOINT_CREATE:
-    case TALUS_COMMAND_JOINT_DESTROY:
-    case TALUS_COMMAND_JOINT_SET_DRIVE:
-        return 0;
-    default:
-        return 1;
-    }
-}
-
 talus_status talus_world_apply(talus_world *world, talus_command *command) {
     if (!tl_world_is_sound(world) || !command || (unsigned)command->kind >= TALUS_COMMAND_COUNT) {
         return TALUS_BAD_ARGUMENT;
@@ -231,7 +207,7 @@ talus_status talus_world_apply(talus_world *world, talus_command *command) {
     uint32_t i = 0;
     talus_status status = find_target(world, command, info->target, &i);
     if (status == TALUS_OK) {
-        if (defines(command->kind)) {
+        if (info->defines) {
             tl_header_of(world)->defined = 0;
         }
         status = info->run(world, i, command);

@@ -3,6 +3,7 @@
 #include "talus/loop.h"
 
 #include "base/vec.h"
+#include "world/world_internal.h"
 
 talus_status talus_loop_init(talus_loop *loop, float dt, uint32_t max_steps) {
     if (!loop || !(dt > 0.0f && dt <= 1.0f) || max_steps == 0) {
@@ -57,11 +58,11 @@ talus_status talus_time_budget_init(talus_time_budget *budget, double seconds, c
     if (!budget || !wanted) {
         return TALUS_BAD_ARGUMENT;
     }
-    if (seconds - seconds != 0.0 || !tl_is_finite(wanted->error_budget)) {
-        return TALUS_NOT_FINITE;
+    talus_status status = seconds - seconds != 0.0 ? TALUS_NOT_FINITE : tl_check_accuracy(wanted);
+    if (status != TALUS_OK) {
+        return status;
     }
-    if (!(seconds > 0.0) || !(wanted->error_budget > 0.0f && wanted->error_budget <= 1.0f) || wanted->substeps < 1u ||
-        wanted->substeps > wanted->most_substeps || wanted->most_substeps > TALUS_MAX_SUBSTEPS) {
+    if (!(seconds > 0.0 && wanted->error_budget > 0.0f && wanted->substeps <= wanted->most_substeps)) {
         return TALUS_BAD_ARGUMENT;
     }
     budget->seconds = seconds;

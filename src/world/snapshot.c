@@ -35,7 +35,7 @@ static int is_packed(tl_column_id column) {
     }
 }
 
-/* Columns that only commands write, and none of those that act every frame (command.c). They come first, and what they
+/* Columns that only commands write, and none of those that act every frame (command.h). They come first, and what they
  * were packed to is kept in the block: as long as that stands, nothing of them is read to save, and a snapshot that
  * begins with the same bytes says the same of them. */
 static int is_definition(tl_column_id column) {

@@ -70,12 +70,12 @@ talus_world_def talus_world_def_default(void) {
 static int capacity_fits(uint32_t n) { return n >= 1u && n <= TALUS_MAX_CAPACITY; }
 static int in_range(float x, float low, float high) { return x >= low && x <= high; }
 
-static talus_status check_accuracy(float error_budget, uint32_t substeps, uint32_t most_substeps) {
-    if (!tl_is_finite(error_budget)) {
+talus_status tl_check_accuracy(const talus_accuracy *a) {
+    if (!tl_is_finite(a->error_budget)) {
         return TALUS_NOT_FINITE;
     }
-    int ok = in_range(error_budget, 0.0f, 1.0f) && substeps >= 1u && substeps <= TALUS_MAX_SUBSTEPS &&
-             most_substeps >= 1u && most_substeps <= TALUS_MAX_SUBSTEPS;
+    int ok = in_range(a->error_budget, 0.0f, 1.0f) && a->substeps >= 1u && a->substeps <= TALUS_MAX_SUBSTEPS &&
+             a->most_substeps >= 1u && a->most_substeps <= TALUS_MAX_SUBSTEPS;
     return ok ? TALUS_OK : TALUS_BAD_ARGUMENT;
 }
 
@@ -96,9 +96,10 @@ static talus_status check_def(const talus_world_def *d) {
             return TALUS_NOT_FINITE;
         }
     }
-    talus_status accuracy = check_accuracy(d->error_budget, d->substeps, d->most_substeps);
-    if (accuracy != TALUS_OK) {
-        return accuracy;
+    const talus_accuracy accuracy = {d->error_budget, d->substeps, d->most_substeps};
+    talus_status status = tl_check_accuracy(&accuracy);
+    if (status != TALUS_OK) {
+        return status;
     }
     int ok = d->iterations >= 1u && d->iterations <= TALUS_MAX_ITERATIONS && in_range(d->contact_hertz, 1e-3f, 1e5f) &&
              in_range(d->contact_damping_ratio, 0.0f, 1e4f) && in_range(d->push_speed, 0.0f, 1e4f) &&
@@ -209,7 +210,7 @@ talus_status tl_run_world_set_gravity(talus_world *world, uint32_t i, talus_comm
 talus_status tl_run_world_set_accuracy(talus_world *world, uint32_t i, talus_command *c) {
     const talus_accuracy *a = &c->as.accuracy;
     (void)i;
-    talus_status status = check_accuracy(a->error_budget, a->substeps, a->most_substeps);
+    talus_status status = tl_check_accuracy(a);
     if (status == TALUS_OK) {
         tl_settings *s = &tl_header_of(world)->settings;
         s->error_budget = a->error_budget;

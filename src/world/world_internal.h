@@ -27,6 +27,9 @@ static inline talus_status tl_check_pose(const talus_pose *p) {
     return q.x == 0.0f && q.y == 0.0f && q.z == 0.0f && q.w == 0.0f ? TALUS_BAD_ARGUMENT : tl_check_point(p->position);
 }
 
+/* TALUS_NOT_FINITE, TALUS_BAD_ARGUMENT. */
+talus_status tl_check_accuracy(const talus_accuracy *accuracy);
+
 static inline uint32_t tl_next_generation(uint32_t generation) { return generation + 1u ? generation + 1u : 1u; }
 
 /* Whether a number that came from outside is an index below `high`, or a link (twice an index plus a side), or none. */

@@ -99,6 +99,16 @@ static inline void set_velocity(talus_world *world, talus_body body, talus_vec3 
 }
 static inline void step(talus_world *world) { OK(talus_world_step(world, DT, NULL, NULL)); }
 
+/* Restores a snapshot of one world into another of the same capacities, which goes on by the scalar instruction set. */
+static inline void move_to_scalar(const talus_world *world, talus_world *other) {
+    size_t size = talus_world_save_size(world), written;
+    void *snapshot = kit_alloc(size);
+    OK(talus_world_save(world, snapshot, size, &written));
+    OK(talus_world_restore(other, snapshot, written));
+    OK(talus_world_set_isa(other, TALUS_ISA_SCALAR));
+    kit_free(snapshot);
+}
+
 static inline talus_joint join(talus_world *world, const talus_joint_def *def) {
     talus_joint joint;
     OK(talus_joint_create(world, def, &joint));

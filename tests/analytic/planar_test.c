@@ -10,9 +10,6 @@ static talus_vec3 in_plane(int axis, float along, float up, float off) {
     v[(axis + 1) % 3] = along, v[(axis + 2) % 3] = up, v[axis] = off;
     return kit_vec(v[0], v[1], v[2]);
 }
-static uint32_t locks_of(int axis) {
-    return (uint32_t)TALUS_LOCK_LINEAR_X << axis | (7u ^ 1u << axis) * (uint32_t)TALUS_LOCK_ANGULAR_X;
-}
 
 /* Down is -up, turned towards +along by `slope` (rad). Keeps frames, of which islands are told. */
 static talus_world plane_world(int axis, double slope) {
@@ -34,7 +31,7 @@ static talus_body body_in(talus_world *world, int axis, talus_vec3 at, const tal
     talus_body body;
     def.type = TALUS_DYNAMIC;
     def.pose.position = at;
-    def.locks = locks_of(axis);
+    def.locks = talus_lock_plane((uint32_t)axis);
     OK(talus_body_create(world, &def, &body));
     kit_shape(world, body, shape);
     return body;
@@ -65,7 +62,7 @@ static void solves_three_degrees(void **state) {
             world = plane_world(axis, 0.0);
             floor_in(&world, axis, 0.5f);
             talus_body box = box_in(&world, axis, 0.0f, 0.25f, kit_vec(0.25f, 0.25f, 0.25f), 0.5f);
-            OK(talus_body_set_locks(&world, box, locked ? locks_of(axis) : 0u));
+            OK(talus_body_set_locks(&world, box, locked ? talus_lock_plane((uint32_t)axis) : 0u));
             kit_steps(&world, 60);
             OK(talus_world_get_frame(&world, 0, &frame));
             assert_int_equal(frame.largest[0].rows, locked ? 3 : 7);
@@ -241,15 +238,11 @@ static void restored(void **state) {
                     kit_vec(0.55f * (float)(i % 4) + 0.1f * (float)(i / 4), 0.3f + 0.8f * (float)(i / 4), OFF), &shape);
     }
     kit_steps(&world, 50);
-    size_t size = talus_world_save_size(&world), written;
-    void *snapshot = kit_alloc(size);
-    OK(talus_world_save(&world, snapshot, size, &written));
-    OK(talus_world_restore(&other, snapshot, written));
-    OK(talus_world_set_isa(&other, TALUS_ISA_SCALAR));
+    move_to_scalar(&world, &other);
     uint32_t planar = 0;
     for (int i = 0; i < 90; i++) {
         if (i % 6 == 5) {
-            uint32_t locks = i % 12 == 5 ? 0u : locks_of(2);
+            uint32_t locks = i % 12 == 5 ? 0u : talus_lock_plane(2u);
             OK(talus_body_set_locks(&world, body[i / 6], locks));
             OK(talus_body_set_locks(&other, body[i / 6], locks));
         }
@@ -258,7 +251,6 @@ static void restored(void **state) {
         planar += kit_counters(&world).contacts_planar;
     }
     assert_true(planar > 90);
-    kit_free(snapshot);
     kit_end(&world);
     kit_end(&other);
 }

@@ -153,17 +153,12 @@ static void restored(void **state) {
     column_of(&world, 0.0f, 200.0f, 0.05f);
     kit_steps(&world, 20);
     assert_int_equal(kit_counters(&world).contacts_pressed, 5);
-    size_t size = talus_world_save_size(&world), written;
-    void *snapshot = kit_alloc(size);
-    OK(talus_world_save(&world, snapshot, size, &written));
-    OK(talus_world_restore(&other, snapshot, written));
-    OK(talus_world_set_isa(&other, TALUS_ISA_SCALAR));
+    move_to_scalar(&world, &other);
     for (int i = 0; i < 60; i++) {
         kit_steps(&world, 1), kit_steps(&other, 1);
         assert_true(talus_world_hash(&world) == talus_world_hash(&other));
         assert_int_equal(kit_counters(&other).contacts_pressed, kit_counters(&world).contacts_pressed);
     }
-    kit_free(snapshot);
     kit_end(&world);
     kit_end(&other);
 }

@@ -9,17 +9,23 @@ static double depth_under(int cubes, int on_floor) {
     return depth > 2.5e-4 ? 2.5e-4 + (depth - 2.5e-4) / 20.0 : depth;
 }
 
-/* Boxes on each other go back to where they were put but for the depths, to 5 %, by exp(-t / 2 s); on their way they
- * stay upright and come to rest. Twenty are 6.2 mm lower in the end. */
-static void stack_of(int count, int steps) {
+/* A floor and cubes of a metre on each other. */
+static talus_world stacked(int count, int sleeps, talus_body *body) {
     talus_world_def def = kit_small();
-    def.enable_sleep = 0;
+    def.enable_sleep = (uint8_t)sleeps;
     talus_world world = kit_world(&def);
     kit_floor(&world);
-    talus_body body[20];
     for (int i = 0; i < count; i++) {
         body[i] = kit_box(&world, kit_vec(0.0f, 0.5f + (float)i, 0.0f), 0.5f);
     }
+    return world;
+}
+
+/* Boxes on each other go back to where they were put but for the depths, to 5 %, by exp(-t / 2 s); on their way they
+ * stay upright and come to rest. Twenty are 6.2 mm lower in the end. */
+static void stack_of(int count, int steps) {
+    talus_body body[20];
+    talus_world world = stacked(count, 0, body);
     kit_steps(&world, steps);
     double sunk = 0.0;
     for (int i = 0; i < count; i++) {
@@ -42,13 +48,8 @@ static void stack_stands(void **state) {
 /* A stack falls asleep while it is still on its way. */
 static void stack_sleeps(void **state) {
     (void)state;
-    talus_world_def def = kit_small();
-    talus_world world = kit_world(&def);
-    kit_floor(&world);
     talus_body body[10];
-    for (int i = 0; i < 10; i++) {
-        body[i] = kit_box(&world, kit_vec(0.0f, 0.5f + (float)i, 0.0f), 0.5f);
-    }
+    talus_world world = stacked(10, 1, body);
     kit_steps(&world, 600);
     for (int i = 0; i < 10; i++) {
         CLOSE(kit_place(&world, body[i]).x, 0.0, 2e-3);
@@ -63,14 +64,8 @@ static void stack_sleeps(void **state) {
  * are gone. */
 static void load_taken_away(void **state) {
     (void)state;
-    talus_world_def def = kit_small();
-    def.enable_sleep = 0;
-    talus_world world = kit_world(&def);
-    kit_floor(&world);
     talus_body body[10];
-    for (int i = 0; i < 10; i++) {
-        body[i] = kit_box(&world, kit_vec(0.0f, 0.5f + (float)i, 0.0f), 0.5f);
-    }
+    talus_world world = stacked(10, 0, body);
     kit_steps(&world, 900);
     for (int i = 3; i < 10; i++) {
         assert_int_equal(talus_body_destroy(&world, body[i]), TALUS_OK);

@@ -213,8 +213,7 @@ static void build_planes(talus_world *world) {
         def.pose.position =
             golden_vec(axis == 2u ? along : 0.1f * (float)axis, 0.4f + 0.9f * (float)(place / 5u), apart);
         def.pose.position.z += axis == 2u ? 0.0f : along;
-        def.locks =
-            i < 3u ? 0u : (uint32_t)TALUS_LOCK_LINEAR_X << axis | (7u ^ 1u << axis) * (uint32_t)TALUS_LOCK_ANGULAR_X;
+        def.locks = i < 3u ? 0u : talus_lock_plane(axis);
         if (axis == 1u) { /* seen from above: what falls is held */
             def.linear_velocity = golden_vec(-0.5f * along, 0.0f, golden_range(-1.0f, 1.0f));
         }
@@ -245,9 +244,8 @@ static void build_planes(talus_world *world) {
 static void lock_and_let_go(talus_world *world, uint32_t step) {
     if (step % 40u == 39u) {
         talus_body body = {4u + 5u * (step / 40u), 1u};
-        uint32_t axis = (body.index - 1u) % 3u, plane = 7u ^ 1u << axis;
-        uint32_t locks = (uint32_t)TALUS_LOCK_LINEAR_X << axis | plane * (uint32_t)TALUS_LOCK_ANGULAR_X;
-        golden_check(talus_body_set_locks(world, body, step % 80u == 39u ? 0u : locks), "locks");
+        uint32_t locks = step % 80u == 39u ? 0u : talus_lock_plane((body.index - 1u) % 3u);
+        golden_check(talus_body_set_locks(world, body, locks), "locks");
     }
     for (uint32_t k = 0; k < 3u; k++) {
         talus_body plank = {1u + k, 1u};

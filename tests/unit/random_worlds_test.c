@@ -119,7 +119,7 @@ static talus_shape_def any_shape(const scene *s) {
 
 /* None, any, or those of a plane. */
 static uint32_t any_locks(void) {
-    uint32_t axis = below(3), plane = (uint32_t)TALUS_LOCK_LINEAR_X << axis | (7u ^ 1u << axis) * TALUS_LOCK_ANGULAR_X;
+    uint32_t plane = talus_lock_plane(below(3));
     uint32_t any = below(64), kind = below(8);
     return kind < 1 ? 0u : kind < 5 ? plane : any;
 }

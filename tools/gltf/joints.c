@@ -244,7 +244,7 @@ static uint32_t plane_of(const gltf_loader *loader, int node, int other, const g
     const double along[] = {fabs(n.x), fabs(n.y), fabs(n.z)};
     for (uint32_t i = 0; i < 3; i++) {
         if (along[i] > 1 - near * near && gltf_dot3(n, m) > 1 - near * near && fabs(apart) < near) {
-            return (uint32_t)TALUS_LOCK_LINEAR_X << i | (7u ^ 1u << i) * (uint32_t)TALUS_LOCK_ANGULAR_X;
+            return talus_lock_plane(i);
         }
     }
     return 0;

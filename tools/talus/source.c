@@ -57,6 +57,16 @@ source_options source_options_default(void) {
     return options;
 }
 
+/* From 1 to `most`. */
+static int take_count(const char *name, const char *text, uint64_t most, uint32_t *out) {
+    uint64_t number = 0;
+    if (!source_whole(name, text, 1, most, &number)) {
+        return TOOL_USAGE;
+    }
+    *out = (uint32_t)number;
+    return 0;
+}
+
 int source_take_option(int option, const char *text, source_options *out) {
     uint64_t number = 0;
     switch (option) {
@@ -65,17 +75,9 @@ int source_take_option(int option, const char *text, source_options *out) {
     case SOURCE_DT:
         return source_number("--dt", text, "seconds", 1e-6, 1, &out->dt) ? 0 : TOOL_USAGE;
     case SOURCE_SUBSTEPS:
-        if (!source_whole("--substeps", text, 1, TALUS_MAX_SUBSTEPS, &number)) {
-            return TOOL_USAGE;
-        }
-        out->build.substeps = (uint32_t)number;
-        return 0;
+        return take_count("--substeps", text, TALUS_MAX_SUBSTEPS, &out->build.substeps);
     case SOURCE_ITERATIONS:
-        if (!source_whole("--iterations", text, 1, TALUS_MAX_ITERATIONS, &number)) {
-            return TOOL_USAGE;
-        }
-        out->build.iterations = (uint32_t)number;
-        return 0;
+        return take_count("--iterations", text, TALUS_MAX_ITERATIONS, &out->build.iterations);
     case SOURCE_THREADS:
         if (!source_whole("--threads", text, 1, 1024, &number)) {
             return TOOL_USAGE;
@@ -92,11 +94,7 @@ int source_take_option(int option, const char *text, source_options *out) {
         return 0;
     }
     case SOURCE_MOST_SUBSTEPS:
-        if (!source_whole("--most-substeps", text, 1, TALUS_MAX_SUBSTEPS, &number)) {
-            return TOOL_USAGE;
-        }
-        out->build.most_substeps = (uint32_t)number;
-        return 0;
+        return take_count("--most-substeps", text, TALUS_MAX_SUBSTEPS, &out->build.most_substeps);
     default:
         out->build.no_sleep = 1;
         return 0;

@@ -27,14 +27,20 @@ static void unite(uint32_t *parent, uint32_t a, uint32_t b) {
     }
 }
 
-/* Ties the two ends; an end that is a moving kinematic body keeps the other awake. */
-static void tie(tl_header *h, uint32_t a, uint32_t b) {
-    uint32_t *parent = tl_island_parent(h);
+/* Ties the two ends if both have a row of the solver. */
+static void tie_rows(tl_header *h, uint32_t a, uint32_t b) {
+    if (tl_body_row(h)[a] && tl_body_row(h)[b]) {
+        unite(tl_island_parent(h), a, b);
+    }
+}
+
+/* Ties the two ends if both may sleep; an end that is a moving kinematic body keeps the other awake. */
+static void tie_sleepers(tl_header *h, uint32_t a, uint32_t b) {
     float *quiet = tl_island_quiet(h);
     const tl_body_meta *bodies = tl_bodies(h);
     int dynamic_a = tl_body_is_dynamic(h, a), dynamic_b = tl_body_is_dynamic(h, b);
     if (dynamic_a && dynamic_b) {
-        unite(parent, a, b);
+        unite(tl_island_parent(h), a, b);
     } else if (dynamic_a && bodies[b].moves) {
         quiet[a] = 0.0f;
     } else if (dynamic_b && bodies[a].moves) {
@@ -42,52 +48,49 @@ static void tie(tl_header *h, uint32_t a, uint32_t b) {
     }
 }
 
-void tl_islands_of_rows(tl_header *h) {
+static void tie(tl_header *h, uint32_t a, uint32_t b, int by_rows) {
+    if (by_rows) {
+        tie_rows(h, a, b);
+    } else {
+        tie_sleepers(h, a, b);
+    }
+}
+
+/* island_parent: ties the ends of all touching contacts and joints, by their rows or by what falls asleep together. */
+static void find_roots(tl_header *h, int by_rows) {
     uint32_t *parent = tl_island_parent(h);
-    const uint32_t *rows = tl_body_row(h), *awake = tl_awake_body(h);
+    const uint32_t *awake = tl_awake_body(h);
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         parent[awake[k]] = awake[k];
     }
     for (uint32_t k = 0; k < h->awake_contacts; k++) {
         const tl_contact_meta *m = &tl_contacts(h)[tl_awake_contact(h)[k]];
-        if ((m->flags & TL_CONTACT_COLORED) && rows[m->body_a] && rows[m->body_b]) {
-            unite(parent, m->body_a, m->body_b);
+        if (m->flags & TL_CONTACT_COLORED) {
+            tie(h, m->body_a, m->body_b, by_rows);
         }
     }
     for (uint32_t k = 0; k < h->awake_joints; k++) {
         const tl_joint_record *j = &tl_joints(h)[tl_awake_joint(h)[k]];
-        if (rows[j->body_a] && rows[j->body_b]) {
-            unite(parent, j->body_a, j->body_b);
-        }
+        tie(h, j->body_a, j->body_b, by_rows);
     }
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         parent[awake[k]] = find_root(parent, awake[k]);
     }
 }
 
+void tl_islands_of_rows(tl_header *h) { find_roots(h, 1); }
+
 /* island_parent and, at the roots, island_quiet: the least quiet time of the island. */
 static void find_islands(tl_header *h) {
-    uint32_t *parent = tl_island_parent(h);
     float *quiet = tl_island_quiet(h);
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
         uint32_t b = tl_awake_body(h)[k];
-        parent[b] = b;
         quiet[b] = tl_body_quiets(h)[b].time;
     }
-    for (uint32_t k = 0; k < h->awake_contacts; k++) {
-        const tl_contact_meta *m = &tl_contacts(h)[tl_awake_contact(h)[k]];
-        if (m->flags & TL_CONTACT_COLORED) {
-            tie(h, m->body_a, m->body_b);
-        }
-    }
-    for (uint32_t k = 0; k < h->awake_joints; k++) {
-        const tl_joint_record *j = &tl_joints(h)[tl_awake_joint(h)[k]];
-        tie(h, j->body_a, j->body_b);
-    }
+    find_roots(h, 0);
     h->counters.islands = 0;
     for (uint32_t k = 0; k < h->awake_bodies; k++) {
-        uint32_t b = tl_awake_body(h)[k], root = find_root(parent, b);
-        parent[b] = root;
+        uint32_t b = tl_awake_body(h)[k], root = tl_island_parent(h)[b];
         quiet[root] = tl_min(quiet[root], quiet[b]);
         h->counters.islands += root == b && tl_body_is_dynamic(h, b);
     }

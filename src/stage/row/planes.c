@@ -11,8 +11,7 @@
 static uint32_t planes_of_locks(uint32_t locks) {
     uint32_t planes = 0;
     for (uint32_t k = 0; k < 3u; k++) {
-        uint32_t need = (uint32_t)TALUS_LOCK_LINEAR_X << k | (7u ^ 1u << k) * (uint32_t)TALUS_LOCK_ANGULAR_X;
-        planes |= (uint32_t)((locks & need) == need) << k;
+        planes |= (uint32_t)((locks & talus_lock_plane(k)) == talus_lock_plane(k)) << k;
     }
     return planes;
 }
