@@ -104,7 +104,7 @@ help:
 	@echo "make sanitize       the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make golden         the golden hashes over compilers, levels, instruction sets, processors (FAST=1: this one)"
 	@echo "make golden-update  takes this build's hashes as the golden ones"
-	@echo "make fuzz           every fuzzer for FUZZ_TIME=$(FUZZ_TIME) seconds"
+	@echo "make fuzz           every fuzzer for FUZZ_TIME=$(FUZZ_TIME) seconds, by chance or by FUZZ_SEED=N"
 	@echo "make bench          own scenes and where their time goes"
 	@echo "make feature-cost   what features cost scenes that have none of them, in instructions"
 	@echo "make snapshot-cost  what a snapshot takes, in bytes and beside a memcpy"
