@@ -45,4 +45,12 @@ void tl_linkages_soften(tl_header *h);
 /* Notes in the groups, when all are made, which of the linkages are not exact. */
 void tl_linkages_note_exact(tl_header *h);
 
+/* Whether some awake bodies have so few contacts that they may be towers. O(awake bodies). */
+int tl_towers_likely(const tl_header *h);
+
+/* Marks by TL_TOWER in `pressed`, by rows, the bodies of towers that springs would not keep upright, whole ones of no
+ * more than `room` contacts together; returns how many those are. Rows are filled. O(awake bodies). */
+#define TL_TOWER 2u
+uint32_t tl_towers_find(const tl_step *step, uint32_t *pressed, uint32_t room);
+
 #endif

@@ -3,7 +3,9 @@
  * Gauss-Seidel hands a load down by the share that the lighter of two bodies has of both: under a body that is R times
  * as heavy it needs R sweeps a contact, and until then the light ones give way. So where a body stands on one many
  * times lighter, the contacts from there on down that bear many times the weight of one of their bodies, as the
- * impulses of the last sub-step have it, are put into a system of their own. It is ordered as linkages are. */
+ * impulses of the last sub-step have it, are put into a system of their own. It is ordered as linkages are.
+ *
+ * And so are the contacts of towers that springs would not keep upright. */
 #include <stddef.h>
 #include <string.h>
 
@@ -95,7 +97,7 @@ static void find_rest(finder *f) {
     }
 }
 
-/* The contacts of pressed bodies that are a load to one of theirs, as they lie in the groups. */
+/* The contacts of towers, and those of pressed bodies that are a load to one of theirs, as they lie in the groups. */
 static void collect(finder *f) {
     tl_header *h = f->h;
     for (uint32_t i = 0; i < h->groups; i++) {
@@ -105,9 +107,10 @@ static void collect(finder *f) {
             if (!(f->pressed[a] | f->pressed[b])) {
                 continue;
             }
-            float load = load_of(h, g->contact[k]);
+            int in_tower = f->pressed[a] == TL_TOWER || f->pressed[b] == TL_TOWER;
+            float load = in_tower ? 0.0f : load_of(h, g->contact[k]);
             int on_a = is_load_to(f, a, load), on_b = is_load_to(f, b, load);
-            if (!(on_a || on_b) || (on_a && is_tied(f, a)) || (on_b && is_tied(f, b))) {
+            if (!in_tower && (!(on_a || on_b) || (on_a && is_tied(f, a)) || (on_b && is_tied(f, b)))) {
                 continue;
             }
             if (f->count++ >= h->capacity[TL_COUNT_PRESSED]) {
@@ -213,13 +216,17 @@ void tl_stage_find_presses(tl_step *step) {
     float gravity = tl_length(h->settings.gravity);
     finder f = {h, LOADED * gravity * step->sub / step->warm_scale, tl_linkage_queue(h), tl_linkage_rows(h), 0, 0};
     h->presses = h->pressed = h->counters.contacts_pressed = h->counters.contacts_left = 0;
-    if (!(f.least > 0.0f) || !any_unlike(h)) {
+    int unlike = any_unlike(h), towers = tl_towers_likely(h);
+    if (!(f.least > 0.0f) || !(unlike || towers)) {
         return;
     }
     memset(f.pressed, 0, (h->awake_bodies + 1u) * sizeof(uint32_t));
-    find_first(&f);
-    if (f.found > 0) {
+    uint32_t standing = towers ? tl_towers_find(step, f.pressed, h->capacity[TL_COUNT_PRESSED]) : 0u;
+    if (unlike) {
+        find_first(&f);
         find_rest(&f);
+    }
+    if (f.found + standing > 0) {
         collect(&f);
         if (f.count == h->pressed) {
             make_presses(&f);

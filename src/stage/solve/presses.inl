@@ -15,7 +15,7 @@
 #define SOFTER 16.0f      /* how many times more where a way leads astray, */
 #define SOFTEST 0.1f      /* and at most */
 #define LEAST_SHARE 0.5f  /* of a way that is to be of use */
-#define AT_REST 1e-5f     /* m/s: rows that all are slower are met */
+#define AT_REST 5e-5f     /* m/s: rows that all are slower are met */
 #define CLOSING 1e-4f     /* m/s: from here on a point without an impulse is taken in */
 #define NEAR_SLIDE 0.999f /* of the friction that a sliding contact has */
 #define PRESS_DEPTH 5e-4f /* m: overlap that is left */
@@ -196,16 +196,48 @@ static inline tl_f8 speeds_to_meet(const tl_header *h, const tl_pressed *p) {
     return tl_f8_add(speeds_of(tl_row_velocity(h), p), tl_f8_load(p->bias));
 }
 
+/* Of the four points of a face one is too many: impulses v, as large as the triangles that the other three make, push
+ * nothing. Without them the rest is least; else they would grow by chance until some point has to let go. */
+static void even_out(tl_pressed *p) {
+    uint32_t side = p->turns[0] > 0.0f ? 0u : 1u;
+    talus_vec3 at[4];
+    for (uint32_t k = 0; k < 4u; k++) {
+        at[k] = tl_v(p->j[side][0][k], p->j[side][1][k], p->j[side][2][k]);
+    }
+    talus_vec3 d1 = tl_sub(at[1], at[0]), d2 = tl_sub(at[2], at[0]), d3 = tl_sub(at[3], at[0]);
+    talus_vec3 across = tl_add(tl_cross(d1, d2), tl_cross(d2, d3));
+    float v[4] = {0.0f, tl_dot(tl_cross(d2, d3), across), tl_dot(tl_cross(d3, d1), across),
+                  tl_dot(tl_cross(d1, d2), across)};
+    v[0] = -(v[1] + v[2] + v[3]);
+    float square = 0.0f, along = 0.0f;
+    for (uint32_t k = 0; k < 4u; k++) {
+        square += v[k] * v[k], along += v[k] * p->impulse[k];
+    }
+    float share = square > 0.0f ? along / square : 0.0f;
+    for (uint32_t k = 0; k < 4u; k++) { /* no further than that none pulls */
+        float most = v[k] != 0.0f ? p->impulse[k] / v[k] : share;
+        share = share > 0.0f && v[k] > 0.0f ? tl_min(share, most) : share;
+        share = share < 0.0f && v[k] < 0.0f ? tl_max(share, most) : share;
+    }
+    for (uint32_t k = 0; k < 4u; k++) {
+        p->impulse[k] = tl_max(p->impulse[k] - share * v[k], 0.0f);
+    }
+}
+
 /* What stays as it is until the speeds are met, and where it begins. */
 static void begin_to_meet(const tl_step *step, tl_pressed *p) {
     for (uint32_t row = 0; row < p->rows; row++) {
         p->impulse[row] = *impulse_of(step->h, p, row);
     }
+    if (p->points == 4u) {
+        even_out(p);
+    }
     tl_f8 gap = gaps_of(step->h, p), ahead = tl_f8_mul(tl_f8_max(gap, tl_f8_zero()), tl_f8_set1(step->inverse_sub));
     tl_f8 back = drawn_back(step, tl_f8_set1(p->held), gap);
     tl_f8_store(p->bias, tl_f8_select(tl_m8_from_bits(point_bits(p)), ahead, back));
     float x = p->impulse[p->points], y = p->impulse[p->points + 1u], most = NEAR_SLIDE * p->slide * press_of(p);
-    p->slides = !(x * x + y * y < most * most);
+    p->fresh = !(most > 0.0f);
+    p->slides = !p->fresh && !(x * x + y * y < most * most);
     p->barred = 0;
 }
 
@@ -216,17 +248,19 @@ static void end_meeting(const tl_header *h, const tl_pressed *p) {
 }
 
 /* Notes where a round starts from, and which rows hold there: those of points that bear or close, and both tangents'
- * unless they slide. Returns whether any of them is not met. */
+ * unless they slide; of what bore nothing before all that do not open, for under what falls on one another nothing
+ * closes but the lowest. Returns whether any of them is not met. */
 static inline int look_at(const tl_header *h, tl_pressed *p, uint32_t *changed) {
     tl_f8 impulse = tl_f8_load(p->impulse), speed = speeds_to_meet(h, p);
     tl_f8_store(p->from, impulse);
     tl_f8_store(p->speed, speed);
-    tl_m8 bears = tl_m8_or(tl_f8_gt(impulse, tl_f8_zero()), tl_f8_lt(speed, tl_f8_set1(-CLOSING)));
+    tl_m8 bears = tl_m8_or(tl_f8_gt(impulse, tl_f8_zero()), tl_f8_lt(speed, tl_f8_set1(p->fresh ? AT_REST : -CLOSING)));
     uint32_t met = tl_m8_bits(tl_f8_lt(tl_f8_abs(speed), tl_f8_set1(AT_REST)));
     uint32_t now = tl_m8_bits(bears) & point_bits(p) & ~p->barred;
     now |= p->slides ? 0u : tangent_bits(p);
     *changed |= now ^ p->holds;
     p->holds = now;
+    p->fresh = 0;
     return (now & ~met) != 0;
 }
 

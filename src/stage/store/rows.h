@@ -167,7 +167,7 @@ typedef struct tl_pressed {
     uint32_t barred;         /* bits of rows that would have pulled at once */
     float mass[2], turns[2]; /* of a and b: inverse mass, 1 if impulses turn it */
     float held, hold, slide; /* as in the group: 1 if it did not slide, static and dynamic friction */
-    float padding;           /* what follows is aligned */
+    uint32_t fresh;          /* it bore nothing, and this is the first round */
     float n[3][TL_LANES];    /* directions of the rows, */
     float j[2][3][TL_LANES]; /* whitened angular Jacobians of a and b */
     float gap[TL_LANES];     /* m: separation of points, what tangents have slid, when the step began */
