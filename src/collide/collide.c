@@ -4,6 +4,7 @@
 #include "collide/polyhedra.h"
 #include "collide/round.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* Two shapes too far apart for their form to count. */
@@ -54,7 +55,7 @@ static void collide_ordered(const tl_convex *a, const tl_convex *b, const talus_
 
 void tl_collide(const tl_convex *a, const tl_convex *b, const talus_pose *b_in_a, float margin, tl_pair_cache *cache,
                 tl_manifold *out) {
-    memset(out, 0, sizeof *out);
+    memset(out, 0, offsetof(tl_manifold, other));
     if (tl_is_far(b_in_a->position)) {
         collide_far(b_in_a->position, margin, out);
         return;

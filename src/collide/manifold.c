@@ -4,7 +4,7 @@
  * alone, so that they outlive a change of roles. Metres. */
 #include "collide/points.h"
 
-#define MAX_CLIP (2u * TL_FEATURE_POINTS)
+#define MAX_CLIP (TL_MANIFOLD_POINTS + TL_MANIFOLD_OTHERS) /* of two faces of TL_FEATURE_POINTS corners */
 #define FROM_REFERENCE 0x8000u
 #define RIM_ID 0x7ffeu /* the number of the lowest point of a disc */
 
@@ -272,8 +272,8 @@ static uint32_t touch_id(const tl_feature *a, const tl_feature *b) {
 }
 
 /* The lowest point of a disc, which the polygon that stands for the disc leaves out. */
-static uint32_t add_rim(const tl_core *core, const tl_feature *ref, int ref_is_a, talus_vec3 n, float margin,
-                        float tolerance, tl_candidate *c, uint32_t count) {
+static void add_rim(const tl_core *core, const tl_feature *ref, int ref_is_a, talus_vec3 n, float margin,
+                    float tolerance, tl_candidates *c) {
     tl_candidate own;
     tl_feature point;
     uint32_t index = 0;
@@ -281,20 +281,20 @@ static uint32_t add_rim(const tl_core *core, const tl_feature *ref, int ref_is_a
     point.point[0] = tl_core_support(core, ref_is_a ? tl_neg(n) : n, &index);
     point.vertex[0] = RIM_ID;
     feature_pair f = {ref, &point, ref_is_a};
-    if (clip_point(&f, n, margin, tolerance, &own) == 0) {
-        return count;
+    if (clip_point(&f, n, margin, tolerance, &own)) {
+        tl_candidates_add(&own, tolerance, c);
     }
-    return tl_candidates_add(&own, tolerance, c, count);
 }
 
 static int face_is_reference(const tl_feature *a, const tl_feature *b, talus_vec3 n) {
     return tl_dot(a->normal, n) >= -tl_dot(b->normal, n) - 1e-3f;
 }
 
-static uint32_t meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, float tolerance,
-                     tl_candidate *c) {
+static void meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, float margin, float tolerance,
+                 tl_candidates *all) {
+    tl_candidate *c = all->c;
     int a_face = a->count >= 3, b_face = b->count >= 3;
-    uint32_t count = 0;
+    all->kept = all->count = 0;
     if (a_face && b_face) {
         a_face = face_is_reference(a, b, n);
         b_face = !a_face;
@@ -302,33 +302,35 @@ static uint32_t meet(const tl_feature *a, const tl_feature *b, talus_vec3 n, flo
     if (a_face || b_face) {
         feature_pair f = {a_face ? a : b, a_face ? b : a, a_face};
         if (tl_abs(tl_dot(f.ref->normal, n)) < 0.1f) {
-            count = 0;
-        } else if (f.inc->count >= 3) {
-            count = clip_polygon(&f, n, margin, c);
-        } else if (f.inc->count == 2) {
-            count = clip_segment(&f, n, margin, c);
-        } else {
-            count = clip_point(&f, n, margin, tolerance, c);
+            return;
         }
+        all->count = f.inc->count >= 3   ? clip_polygon(&f, n, margin, c)
+                     : f.inc->count == 2 ? clip_segment(&f, n, margin, c)
+                                         : clip_point(&f, n, margin, tolerance, c);
+        all->kept = all->count;
     } else if (a->count == 2 && b->count == 2) {
         tl_candidate own;
-        count = meet_segments(a, b, n, margin, c);
+        all->kept = all->count = meet_segments(a, b, n, margin, c);
         if (cross_segments(a, b, n, margin, &own)) {
-            count = tl_candidates_add(&own, tolerance, c, count);
+            tl_candidates_add(&own, tolerance, all);
         }
     }
-    return count > TL_MANIFOLD_POINTS ? tl_candidates_reduce(c, count, n, tolerance) : count;
+    if (all->count > TL_MANIFOLD_POINTS) {
+        tl_candidates_reduce(all, n, tolerance);
+    }
 }
 
 void tl_manifold_build(const tl_feature *a, const tl_feature *b, const tl_touch *touch, float margin, float tolerance,
                        tl_manifold *out) {
-    tl_candidate c[MAX_CLIP];
-    tl_candidates_write(c, meet(a, b, touch->normal, margin, tolerance, c), touch, out);
+    tl_candidates c;
+    meet(a, b, touch->normal, margin, tolerance, &c);
+    tl_candidates_write(&c, touch, out);
 }
 
 void tl_manifold_meet(const tl_core *a, const tl_core *b, tl_feature *fa, tl_feature *fb, const tl_touch *touch,
                       float margin, tl_manifold *out) {
-    tl_candidate c[MAX_CLIP], own;
+    tl_candidates c;
+    tl_candidate own;
     talus_vec3 n = touch->normal;
     float tolerance = tl_touch_tolerance(a, b);
     if (fa->count < 3 && fb->count >= 3) {
@@ -336,17 +338,17 @@ void tl_manifold_meet(const tl_core *a, const tl_core *b, tl_feature *fa, tl_fea
     } else if (fb->count < 3 && fa->count >= 3) {
         tl_feature_find(b, tl_neg(n), 0, fb);
     }
-    uint32_t count = meet(fa, fb, n, margin, tolerance, c);
+    meet(fa, fb, n, margin, tolerance, &c);
     if (fa->count >= 3 && fb->count >= 3) {
         int a_is_ref = face_is_reference(fa, fb, n);
         const tl_core *inc = a_is_ref ? b : a;
         if (inc->kind == TL_CORE_FRUSTUM) {
-            count = add_rim(inc, a_is_ref ? fa : fb, a_is_ref, n, margin, tolerance, c, count);
+            add_rim(inc, a_is_ref ? fa : fb, a_is_ref, n, margin, tolerance, &c);
         }
     }
     own.p = tl_scale(tl_add(touch->point_a, touch->point_b), 0.5f);
     own.gap = touch->separation;
     own.id = touch_id(fa, fb);
-    count = tl_candidates_add(&own, tolerance, c, count);
-    tl_candidates_write(c, count, touch, out);
+    tl_candidates_add(&own, tolerance, &c);
+    tl_candidates_write(&c, touch, out);
 }

@@ -2,12 +2,18 @@
  * the most area, each weighed against how much less deep it is. Metres. */
 #include "collide/points.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A point this much less deep must be that times further out to be kept instead. */
 #define GAP_WEIGHT 4.0f
 
-#define MAX_CANDIDATES (2u * TL_FEATURE_POINTS)
+/* To take points again: how much less deep they may be, of how far they are apart, and of the square of the area that
+ * others span. */
+#define STAY_DEEP 3e-4f
+#define STAY_WIDE 0.5f
+
+#define MAX_CANDIDATES (TL_MANIFOLD_POINTS + TL_MANIFOLD_OTHERS)
 
 /* Candidates seen along the normal from the first chosen one, with x to the second: in units of m^2, both scaled by the
  * distance of the two. */
@@ -43,9 +49,24 @@ static uint32_t fourth(const plan *p, uint32_t count, uint32_t c) {
     return best;
 }
 
-/* Four of many candidates into the front of the array. */
-uint32_t tl_candidates_reduce(tl_candidate *c, uint32_t count, talus_vec3 n, float tolerance) {
-    uint32_t deepest = 0, chosen[4] = {0, 0, 0, 0}, kept = 1;
+/* Brings the chosen ones to the front, in their order. */
+static void bring_forward(tl_candidates *all, const uint32_t *chosen, uint32_t kept) {
+    uint32_t at[4];
+    memcpy(at, chosen, sizeof at);
+    for (uint32_t i = 0; i < kept; ++i) {
+        tl_candidate swap = all->c[i];
+        all->c[i] = all->c[at[i]];
+        all->c[at[i]] = swap;
+        for (uint32_t k = i + 1u; k < kept; ++k) {
+            at[k] = at[k] == i ? at[i] : at[k];
+        }
+    }
+    all->kept = kept;
+}
+
+void tl_candidates_reduce(tl_candidates *all, talus_vec3 n, float tolerance) {
+    const tl_candidate *c = all->c;
+    uint32_t deepest = 0, chosen[4] = {0, 0, 0, 0}, kept = 1, count = all->count;
     float reach2 = 0.0f;
     plan p;
     for (uint32_t i = 1; i < count; ++i) {
@@ -94,41 +115,46 @@ uint32_t tl_candidates_reduce(tl_candidate *c, uint32_t count, talus_vec3 n, flo
     if (found > least + tolerance) {
         chosen[kept < 4 ? kept++ : nearest] = deepest;
     }
-    tl_candidate four[4];
-    for (uint32_t i = 0; i < kept; ++i) {
-        four[i] = c[chosen[i]];
-    }
-    memcpy(c, four, kept * sizeof four[0]);
-    return kept;
+    bring_forward(all, chosen, kept);
 }
 
 /* One more point, where the others are not as deep. */
-uint32_t tl_candidates_add(const tl_candidate *own, float tolerance, tl_candidate *c, uint32_t count) {
-    uint32_t near = count;
+void tl_candidates_add(const tl_candidate *own, float tolerance, tl_candidates *all) {
+    tl_candidate *c = all->c;
+    uint32_t near = all->kept;
     float near2 = 3e38f;
-    for (uint32_t i = 0; i < count; ++i) {
+    for (uint32_t i = 0; i < all->kept; ++i) {
         if (c[i].gap <= own->gap + tolerance) {
-            return count;
+            return;
         }
         float d2 = tl_length2(tl_sub(c[i].p, own->p));
         near = d2 < near2 ? i : near;
         near2 = tl_min(near2, d2);
     }
-    if (count < TL_MANIFOLD_POINTS) {
-        near = count++;
+    if (all->kept < TL_MANIFOLD_POINTS) {
+        near = all->kept++;
+    }
+    if (near < all->count && all->count < MAX_CANDIDATES) {
+        c[all->count++] = c[near];
     }
     c[near] = *own;
-    return count;
+    all->count = all->count < all->kept ? all->kept : all->count;
 }
 
 /* No point is nearer than the shapes are; beside the face, within the slack, it may have seemed so. */
-void tl_candidates_write(const tl_candidate *c, uint32_t count, const tl_touch *touch, tl_manifold *out) {
+static void write_point(const tl_candidate *c, const tl_touch *touch, tl_manifold_point *out) {
+    out->position = c->p;
+    out->separation = tl_max(c->gap, touch->separation);
+    out->id = c->id;
+}
+
+void tl_candidates_write(const tl_candidates *all, const tl_touch *touch, tl_manifold *out) {
     out->normal = touch->normal;
-    out->count = count;
-    for (uint32_t i = 0; i < count; ++i) {
-        out->point[i].position = c[i].p;
-        out->point[i].separation = tl_max(c[i].gap, touch->separation);
-        uint32_t id = c[i].id;
+    out->count = all->kept;
+    out->others = all->count - all->kept;
+    for (uint32_t i = 0; i < all->kept; ++i) {
+        write_point(&all->c[i], touch, &out->point[i]);
+        uint32_t id = all->c[i].id;
         for (uint32_t k = 0; k < i; ++k) {
             if (out->point[k].id == id) {
                 id += 0x4001u;
@@ -137,6 +163,64 @@ void tl_candidates_write(const tl_candidate *c, uint32_t count, const tl_touch *
         }
         out->point[i].id = id;
     }
+    for (uint32_t i = 0; i < out->others; ++i) {
+        write_point(&all->c[all->kept + i], touch, &out->other[i]);
+    }
+}
+
+/* --- points of before ----------------------------------------------------------------------------- */
+
+/* How wide four points lie in the plane across n: the square of the area, to a factor; and their least separation. */
+static float width_of(const tl_manifold_point *p, talus_vec3 n, float *least) {
+    talus_vec3 u = tl_perpendicular(n), v = tl_cross(n, u);
+    float x[4], y[4], mx = 0.0f, my = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
+    *least = p[0].separation;
+    for (uint32_t i = 0; i < 4u; ++i) {
+        talus_vec3 d = tl_sub(p[i].position, p[0].position);
+        x[i] = tl_dot(d, u), y[i] = tl_dot(d, v);
+        mx += 0.25f * x[i], my += 0.25f * y[i];
+        *least = tl_min(*least, p[i].separation);
+    }
+    for (uint32_t i = 0; i < 4u; ++i) {
+        float dx = x[i] - mx, dy = y[i] - my;
+        xx += dx * dx, xy += dx * dy, yy += dy * dy;
+    }
+    return xx * yy - xy * xy;
+}
+
+static const tl_manifold_point *find_point(const tl_manifold *m, uint32_t id) {
+    for (uint32_t i = 0; i < m->count; ++i) {
+        if (m->point[i].id == id) {
+            return &m->point[i];
+        }
+    }
+    for (uint32_t i = 0; i < m->others; ++i) {
+        if (m->other[i].id == id) {
+            return &m->other[i];
+        }
+    }
+    return NULL;
+}
+
+int tl_manifold_stay(tl_manifold *m, const uint32_t *id, uint32_t count) {
+    tl_manifold_point again[4];
+    if (m->others == 0 || count != 4u || m->count != 4u) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < 4u; ++i) {
+        const tl_manifold_point *p = find_point(m, id[i]);
+        if (!p) {
+            return 0;
+        }
+        again[i] = *p;
+    }
+    float least_now, least_then, wide = width_of(m->point, m->normal, &least_now);
+    float as_wide = width_of(again, m->normal, &least_then), reach = sqrtf(sqrtf(tl_max(wide, 0.0f)));
+    if (!(as_wide >= STAY_WIDE * wide && least_then <= least_now + STAY_DEEP * reach)) {
+        return 0;
+    }
+    memcpy(m->point, again, sizeof again);
+    return 1;
 }
 
 float tl_manifold_least(const tl_manifold *m) {

@@ -33,10 +33,8 @@ static float impulse_of(const old_points *old, uint32_t id) {
     return 0.0f;
 }
 
-/* Where two faces lie on each other, either may be the one that the other is clipped to, and points change their names
- * without moving: those go on with what a point there bore that is gone. */
 #define FACE_POINTS 3u
-#define SAME_PLACE 0.1f /* of the speculative margin */
+#define FLAT 1e-3f /* of points nearly on a line nothing is known across it */
 
 static int has_id(const tl_contact_points *points, uint32_t count, uint32_t id) {
     for (uint32_t k = 0; k < count; k++) {
@@ -47,25 +45,46 @@ static int has_id(const tl_contact_points *points, uint32_t count, uint32_t id) 
     return 0;
 }
 
-static void inherit(const tl_header *h, const old_points *old, tl_contact_points *points, uint32_t count) {
-    if (old->count < FACE_POINTS || count < FACE_POINTS) {
+/* Of the many points of two faces on each other four are kept, and not always the same. What those bore that are gone
+ * is handed on to all that are there now, with the same sum and the same moments: x / n + M^-1 d, where d are places
+ * from the middle and M the sum of d d^T. n is the normal in the frame of the points. */
+static void hand_on(const old_points *old, tl_contact_points *points, uint32_t count, talus_vec3 n) {
+    talus_vec3 moment = tl_v(0.0f, 0.0f, 0.0f), mean = moment, u, v;
+    float lost = 0.0f, share = 1.0f / (float)count, uu = 0.0f, uv = 0.0f, vv = 0.0f, x[TL_MANIFOLD_POINTS],
+          y[TL_MANIFOLD_POINTS];
+    for (uint32_t i = 0; i < old->count; i++) {
+        if (old->impulse[i] > 0.0f && !has_id(points, count, old->id[i])) {
+            lost += old->impulse[i];
+            moment = tl_mad(moment, old->impulse[i], old->at[i]);
+        }
+    }
+    if (!(lost > 0.0f) || old->count < FACE_POINTS || count < FACE_POINTS) {
         return;
     }
-    float reach = SAME_PLACE * h->settings.speculative_margin;
-    for (uint32_t i = 0; i < old->count; i++) {
-        float nearest = reach * reach;
-        uint32_t heir = TL_NONE;
-        for (uint32_t k = 0; k < count && !has_id(points, count, old->id[i]); k++) {
-            const tl_contact_point_record *r = &points->p[k];
-            talus_vec3 way = tl_sub(tl_v(r->a[0], r->a[1], r->a[2]), old->at[i]);
-            if (r->impulse == 0.0f && tl_dot(way, way) < nearest) {
-                nearest = tl_dot(way, way);
-                heir = k;
-            }
-        }
-        if (heir != TL_NONE) {
-            points->p[heir].impulse = old->impulse[i];
-        }
+    u = tl_perpendicular(n), v = tl_cross(n, u);
+    for (uint32_t k = 0; k < count; k++) {
+        const float *a = points->p[k].a;
+        mean = tl_mad(mean, share, tl_v(a[0], a[1], a[2]));
+    }
+    for (uint32_t k = 0; k < count; k++) {
+        const float *a = points->p[k].a;
+        talus_vec3 d = tl_sub(tl_v(a[0], a[1], a[2]), mean);
+        x[k] = tl_dot(d, u), y[k] = tl_dot(d, v);
+        uu += x[k] * x[k], uv += x[k] * y[k], vv += y[k] * y[k];
+    }
+    talus_vec3 off = tl_mad(moment, -lost, mean);
+    float mx = tl_dot(off, u), my = tl_dot(off, v), det = uu * vv - uv * uv;
+    float inverse = det > FLAT * (uu + vv) * (uu + vv) ? 1.0f / det : 0.0f, before = lost, after = 0.0f;
+    float gx = inverse * (vv * mx - uv * my), gy = inverse * (uu * my - uv * mx);
+    for (uint32_t k = 0; k < count; k++) {
+        float *impulse = &points->p[k].impulse;
+        before += *impulse;
+        *impulse = tl_max(*impulse + share * lost + x[k] * gx + y[k] * gy, 0.0f);
+        after += *impulse;
+    }
+    float scale = after < 3e38f ? before / after : 0.0f; /* what would have to pull does not, and the sum is the same */
+    for (uint32_t k = 0; k < count; k++) {
+        points->p[k].impulse *= scale;
     }
 }
 
@@ -90,11 +109,11 @@ static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const
         r->id = p->id;
         r->impulse = impulse_of(&old, p->id);
     }
-    inherit(h, &old, points, m->count);
+    talus_vec3 n = tl_rotate(place_a.rotation, m->normal);
+    hand_on(&old, points, m->count, n);
     if (m->count < old.count) {
         memset(&points->p[m->count], 0, (old.count - m->count) * sizeof points->p[0]);
     }
-    talus_vec3 n = tl_rotate(place_a.rotation, m->normal);
     head->normal[0] = n.x, head->normal[1] = n.y, head->normal[2] = n.z;
     meta->count = m->count;
 }
@@ -113,6 +132,15 @@ static void end_touch(tl_header *h, uint32_t c, float gap) {
     tl_contact_end(h, c, clear);
 }
 
+/* With the points that it has, if those will do. */
+static void stay(const tl_header *h, uint32_t c, tl_manifold *m) {
+    uint32_t id[TL_MANIFOLD_POINTS], count = tl_contacts(h)[c].count;
+    for (uint32_t i = 0; i < count; i++) {
+        id[i] = tl_points(h)[c].p[i].id;
+    }
+    (void)tl_manifold_stay(m, id, count);
+}
+
 /* Makes a manifold; 0 if the shapes do not touch, being *gap apart. */
 static int make_manifold(tl_step *step, uint32_t c, const tl_query *q, float *gap) {
     tl_header *h = step->h;
@@ -123,6 +151,7 @@ static int make_manifold(tl_step *step, uint32_t c, const tl_query *q, float *ga
         h->counters.manifolds_made++;
         return 0;
     }
+    stay(h, c, &m);
     store_manifold(h, c, &m, &q->b_in_a, &q->pa, &q->pb);
     kept_until_moved(h, &tl_contacts(h)[c]);
     return 1;
@@ -230,7 +259,8 @@ static void store_boxes(tl_step *step, const tl_pair_batch *batch, const tl_box_
         for (uint32_t i = 0; i < TL_MANIFOLD_POINTS; i++) {
             memcpy(&tl_points(h)[c].p[i], &out->point[i][k], sizeof out->point[i][k]);
         }
-        inherit(h, &old, &tl_points(h)[c], count);
+        const float *n = out->normal[k].f;
+        hand_on(&old, &tl_points(h)[c], count, tl_v(n[0], n[1], n[2]));
         memcpy(tl_heads(h)[c].normal, out->normal[k].f, 3u * sizeof(float));
         tl_contacts(h)[c].count = count;
         kept_until_moved(h, &tl_contacts(h)[c]);
