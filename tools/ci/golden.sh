@@ -18,7 +18,8 @@ produce() {
         return
     fi
     case $1 in wasm*) exe=.wasm ;; *) exe= ;; esac
-    case $4 in '') link= ;; node*) link= ;; *) link=-static ;; esac
+    # unoptimised lanes need more than the 64 KiB of stack that wasm programs have
+    case $4 in '') link= ;; node*) link=-Wl,-z,stack-size=1048576 ;; *) link=-static ;; esac
     if ! make --no-print-directory CC="$2" OPT="$3" CFLAGS= LDFLAGS="$link" EXE="$exe" BUILD="$dir" "$dir/golden$exe" \
         >"$dir/build.log" 2>&1; then
         echo "DOES NOT BUILD" | cat - "$dir/build.log" >"$dir/trouble"
