@@ -45,6 +45,56 @@ static void stack_stands(void **state) {
     stack_of(20, 900);
 }
 
+/* Faces of more points than four, each turned a little on the one below: prisms of six corners, and cylinders. They
+ * come to rest, and their manifolds stay as they are. */
+static void stack_of_round(int cylinders) {
+    talus_vec3 points[12];
+    for (int i = 0; i < 12; i++) {
+        double angle = (i / 2) * PI / 3.0;
+        points[i] = kit_vec((float)(0.5 * cos(angle)), i & 1 ? 0.25f : -0.25f, (float)(0.5 * sin(angle)));
+    }
+    size_t bytes = 0;
+    void *blob = kit_hull_of(points, 12, &bytes);
+    talus_world_def def = kit_small();
+    def.enable_sleep = 0;
+    talus_world world = kit_world(&def);
+    world.geometry = blob, world.geometry_bytes = bytes;
+    kit_floor(&world);
+    talus_body body[10];
+    for (int i = 0; i < 10; i++) {
+        double half = 0.15 * i;
+        body[i] = kit_body(&world, TALUS_DYNAMIC, kit_vec(0.0f, 0.25f + 0.5f * (float)i, 0.0f));
+        talus_pose pose = {kit_place(&world, body[i]), {0.0f, (float)sin(half), 0.0f, (float)cos(half)}};
+        OK(talus_body_set_pose(&world, body[i], &pose));
+        talus_shape_def shape = talus_shape_def_default();
+        shape.geometry.type = cylinders ? TALUS_CYLINDER : TALUS_HULL;
+        shape.geometry.half_height = 0.25f;
+        shape.geometry.radius_top = shape.geometry.radius_bottom = 0.5f;
+        kit_shape(&world, body[i], &shape);
+    }
+    uint32_t kept = 0, made = 0;
+    kit_steps(&world, 300);
+    for (int i = 0; i < 300; i++) {
+        kit_steps(&world, 1);
+        kept += kit_counters(&world).manifolds_kept;
+        made += kit_counters(&world).manifolds_made;
+    }
+    assert_true(kept > 4u * made);
+    for (int i = 0; i < 10; i++) {
+        CLOSE(kit_place(&world, body[i]).x, 0.0, 1e-3);
+        CLOSE(kit_place(&world, body[i]).z, 0.0, 1e-3);
+        CLOSE(kit_place(&world, body[i]).y, 0.25 + 0.5 * i, 4e-3);
+    }
+    kit_end(&world);
+    kit_free(blob);
+}
+
+static void round_faces_rest(void **state) {
+    (void)state;
+    stack_of_round(0);
+    stack_of_round(1);
+}
+
 /* A stack falls asleep while it is still on its way. */
 static void stack_sleeps(void **state) {
     (void)state;
@@ -164,9 +214,9 @@ static void tips_on_a_slope(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stack_stands),    cmocka_unit_test(stack_sleeps),   cmocka_unit_test(load_taken_away),
-        cmocka_unit_test(pyramid_stands),  cmocka_unit_test(heavy_on_light), cmocka_unit_test(tips_at_the_edge),
-        cmocka_unit_test(tips_on_a_slope),
+        cmocka_unit_test(stack_stands),     cmocka_unit_test(stack_sleeps),    cmocka_unit_test(round_faces_rest),
+        cmocka_unit_test(load_taken_away),  cmocka_unit_test(pyramid_stands),  cmocka_unit_test(heavy_on_light),
+        cmocka_unit_test(tips_at_the_edge), cmocka_unit_test(tips_on_a_slope),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "collide/feature.h"
 #include "collide_brute.h"
 
 static tl_convex sphere(float r) {
@@ -290,6 +291,54 @@ static void steady(const tl_convex *a, const tl_convex *b, talus_pose rest, uint
     }
 }
 
+/* A prism of six corners, a metre wide. */
+static tl_convex prism(void) {
+    talus_vec3 points[12];
+    for (int i = 0; i < 12; ++i) {
+        double angle = (i / 2) * 1.0471975511965976;
+        points[i] = tl_v((float)(0.5 * cos(angle)), i & 1 ? 0.25f : -0.25f, (float)(0.5 * sin(angle)));
+    }
+    tl_convex s;
+    memset(&s, 0, sizeof s);
+    s.geometry.type = TALUS_HULL;
+    s.hull = brute_hull_of(points, 12);
+    return s;
+}
+
+/* Of the twelve points of two prisms that lie on each other, turned a little, those of before are taken again while
+ * they say as much, whatever way the upper one is tilted by less than the slack; else others. */
+static void points_stay(void **state) {
+    (void)state;
+    tl_convex a = prism(), b = prism();
+    tl_pair_cache cache = {{0, 0, 0, 0}};
+    tl_manifold m;
+    talus_pose rest = turned(at(0.0f, 0.499f, 0.0f), 0.0f, 1.0f, 0.0f, 0.3);
+    tl_collide(&a, &b, &rest, 0.02f, &cache, &m);
+    assert_int_equal(m.count, 4);
+    assert_int_equal(m.others, 8);
+    uint32_t id[4], changed = 0;
+    for (int i = 0; i < 4; ++i) {
+        id[i] = m.point[i].id;
+    }
+    for (int i = 0; i < 400; ++i) {
+        talus_vec3 axis = brute_direction();
+        talus_pose p = turned(rest, axis.x, axis.y, axis.z, i < 200 ? 1e-4 : 1e-2);
+        tl_collide(&a, &b, &p, 0.02f, &cache, &m);
+        float least = tl_manifold_least(&m);
+        int stays = tl_manifold_stay(&m, id, 4);
+        assert_true(stays || i >= 200);
+        changed += !stays;
+        for (int k = 0; k < 4 && stays; ++k) {
+            assert_int_equal(m.point[k].id, id[k]);
+        }
+        assert_true(tl_manifold_least(&m) <= least + 3e-4f);
+    }
+    assert_true(changed > 50);
+    id[2] ^= 1u; /* one that is not there */
+    tl_collide(&a, &b, &rest, 0.02f, &cache, &m);
+    assert_int_equal(tl_manifold_stay(&m, id, 4), 0);
+}
+
 static void numbers_stay(void **state) {
     (void)state;
     tl_convex a = box(1.0f, 1.0f, 1.0f), b = box(0.5f, 0.5f, 0.5f), ground = box(50.0f, 1.0f, 50.0f);
@@ -357,9 +406,9 @@ static void boxes_around(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balls),   cmocka_unit_test(ball_on_each), cmocka_unit_test(capsules),
-        cmocka_unit_test(boxes),   cmocka_unit_test(lying),        cmocka_unit_test(numbers_stay),
-        cmocka_unit_test(numbers), cmocka_unit_test(boxes_around),
+        cmocka_unit_test(balls),       cmocka_unit_test(ball_on_each), cmocka_unit_test(capsules),
+        cmocka_unit_test(boxes),       cmocka_unit_test(lying),        cmocka_unit_test(numbers_stay),
+        cmocka_unit_test(points_stay), cmocka_unit_test(numbers),      cmocka_unit_test(boxes_around),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -160,16 +160,19 @@ static inline talus_counters kit_counters(const talus_world *world) {
 }
 static inline float kit_length(talus_vec3 v) { return sqrtf(v.x * v.x + v.y * v.y + v.z * v.z); }
 
-/* A hull of a few points in memory of its own: the world's geometry region. */
+/* A hull in memory of its own: the world's geometry region. */
+static inline void *kit_hull_of(const talus_vec3 *points, uint32_t count, size_t *bytes) {
+    size_t scratch_size = talus_hull_scratch_size(count), room = talus_hull_max_size(count);
+    void *scratch = kit_alloc(scratch_size), *out = kit_alloc(room);
+    OK(talus_hull_build(points, count, scratch, scratch_size, out, room, bytes));
+    kit_free(scratch);
+    return out;
+}
 static inline void *kit_hull_region(size_t *bytes) {
     static const talus_vec3 points[8] = {{0.5f, 0.0f, 0.0f},  {-0.5f, 0.1f, 0.0f}, {0.0f, 0.4f, 0.1f},
                                          {0.0f, -0.4f, 0.0f}, {0.1f, 0.0f, 0.45f}, {0.0f, 0.1f, -0.5f},
                                          {0.3f, 0.3f, 0.3f},  {-0.2f, -0.3f, 0.3f}};
-    size_t scratch_size = talus_hull_scratch_size(8), room = talus_hull_max_size(8);
-    void *scratch = kit_alloc(scratch_size), *out = kit_alloc(room);
-    OK(talus_hull_build(points, 8, scratch, scratch_size, out, room, bytes));
-    kit_free(scratch);
-    return out;
+    return kit_hull_of(points, 8, bytes);
 }
 
 /* A world with some of everything in it: boxes, balls, a hull, capsules in a chain, a kinematic body, a sensor. */

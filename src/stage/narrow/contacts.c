@@ -12,12 +12,15 @@
 typedef struct old_points {
     uint32_t count, id[TL_MANIFOLD_POINTS];
     float impulse[TL_MANIFOLD_POINTS];
-    talus_vec3 at[TL_MANIFOLD_POINTS]; /* in a's mass frame */
+    talus_vec3 at[TL_MANIFOLD_POINTS], normal; /* in a's mass frame */
 } old_points;
 
-static void keep_old(const tl_contact_points *points, uint32_t count, old_points *old) {
-    old->count = count;
-    for (uint32_t i = 0; i < count; i++) {
+static void keep_old(const tl_header *h, uint32_t c, old_points *old) {
+    const tl_contact_points *points = &tl_points(h)[c];
+    const float *n = tl_heads(h)[c].normal;
+    old->normal = tl_v(n[0], n[1], n[2]);
+    old->count = tl_contacts(h)[c].count;
+    for (uint32_t i = 0; i < old->count; i++) {
         old->id[i] = points->p[i].id;
         old->impulse[i] = points->p[i].impulse;
         old->at[i] = tl_v(points->p[i].a[0], points->p[i].a[1], points->p[i].a[2]);
@@ -34,7 +37,8 @@ static float impulse_of(const old_points *old, uint32_t id) {
 }
 
 #define FACE_POINTS 3u
-#define FLAT 1e-3f /* of points nearly on a line nothing is known across it */
+#define SAME_NORMAL 0.985f /* the cosine of 10 degrees */
+#define FLAT 1e-3f         /* of points nearly on a line nothing is known across it */
 
 static int has_id(const tl_contact_points *points, uint32_t count, uint32_t id) {
     for (uint32_t k = 0; k < count; k++) {
@@ -58,7 +62,7 @@ static void hand_on(const old_points *old, tl_contact_points *points, uint32_t c
             moment = tl_mad(moment, old->impulse[i], old->at[i]);
         }
     }
-    if (!(lost > 0.0f) || old->count < FACE_POINTS || count < FACE_POINTS) {
+    if (!(lost > 0.0f) || old->count < FACE_POINTS || count < FACE_POINTS || tl_dot(old->normal, n) < SAME_NORMAL) {
         return;
     }
     u = tl_perpendicular(n), v = tl_cross(n, u);
@@ -97,7 +101,7 @@ static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const
     old_points old;
     talus_pose place_a = tl_body_is_fixed(h, meta->body_a) ? *pa : tl_row_pose_of(&tl_shape_place(h)[meta->shape_a]);
     talus_pose place_b = tl_body_is_fixed(h, meta->body_b) ? *pb : tl_row_pose_of(&tl_shape_place(h)[meta->shape_b]);
-    keep_old(points, meta->count, &old);
+    keep_old(h, c, &old);
     for (uint32_t i = 0; i < m->count; i++) {
         const tl_manifold_point *p = &m->point[i];
         talus_vec3 half = tl_scale(m->normal, 0.5f * p->separation);
@@ -255,7 +259,7 @@ static void store_boxes(tl_step *step, const tl_pair_batch *batch, const tl_box_
             continue;
         }
         old_points old;
-        keep_old(&tl_points(h)[c], tl_contacts(h)[c].count, &old);
+        keep_old(h, c, &old);
         for (uint32_t i = 0; i < TL_MANIFOLD_POINTS; i++) {
             memcpy(&tl_points(h)[c].p[i], &out->point[i][k], sizeof out->point[i][k]);
         }
