@@ -379,6 +379,41 @@ static void a_sensor_is_not_heavy(void **state) {
     kit_end(&world);
 }
 
+/* A block whose sole has a fold along a diagonal, so that it stands on one of two faces or on the edge between them,
+ * and a box on it. */
+static void stand_on_a_fold(float fold, float load) {
+    const float e = 0.25f, top = 0.5f;
+    const talus_vec3 points[8] = {{-e, fold, -e}, {e, 0.0f, -e}, {e, fold, e}, {-e, 0.0f, e},
+                                  {-e, top, -e},  {e, top, -e},  {e, top, e},  {-e, top, e}};
+    talus_world_def settings = kit_small();
+    settings.enable_sleep = 0;
+    talus_world world = kit_world(&settings);
+    void *region = kit_hull_of(points, 8, &world.geometry_bytes);
+    world.geometry = region;
+    kit_floor(&world);
+    talus_body block = kit_body(&world, TALUS_DYNAMIC, kit_vec(0.0f, 0.0f, 0.0f));
+    talus_shape_def def = talus_shape_def_default();
+    def.geometry.type = TALUS_HULL;
+    kit_shape(&world, block, &def);
+    kit_box(&world, kit_vec(0.0f, top + load, 0.0f), load);
+    kit_steps(&world, 240);
+    for (int step = 0; step < 60; step++) {
+        kit_steps(&world, 1);
+        assert_true(kit_length(kit_velocity(&world, block)) < 5e-4f);
+        assert_true(kit_length(kit_spin(&world, block)) < 2e-3f);
+    }
+    kit_end(&world);
+    kit_free(region);
+}
+
+static void what_stands_on_a_fold_comes_to_rest(void **state) {
+    (void)state;
+    for (int tenths = 0; tenths <= 10; tenths++) {
+        stand_on_a_fold(1e-4f * (float)tenths, 0.3f);
+        stand_on_a_fold(1e-4f * (float)tenths, 0.45f);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(filters_choose),
@@ -396,6 +431,7 @@ int main(void) {
         cmocka_unit_test(what_is_destroyed_ends_its_touch),
         cmocka_unit_test(sensors_see_and_do_not_push),
         cmocka_unit_test(a_sensor_is_not_heavy),
+        cmocka_unit_test(what_stands_on_a_fold_comes_to_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

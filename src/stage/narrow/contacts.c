@@ -8,37 +8,32 @@
 #include "stage/narrow/query.h"
 #include "stage/store/lists.h"
 
-/* The impulses of a manifold before it is made anew. */
+/* A manifold before it is made anew. */
 typedef struct old_points {
-    uint32_t count, id[TL_MANIFOLD_POINTS];
-    float impulse[TL_MANIFOLD_POINTS];
-    talus_vec3 at[TL_MANIFOLD_POINTS], normal; /* in a's mass frame */
+    uint32_t count;
+    tl_contact_points of;
+    talus_vec3 normal; /* in a's mass frame, as the points are */
 } old_points;
 
-static void keep_old(const tl_header *h, uint32_t c, old_points *old) {
-    const tl_contact_points *points = &tl_points(h)[c];
+static talus_vec3 normal_of(const tl_header *h, uint32_t c) {
     const float *n = tl_heads(h)[c].normal;
-    old->normal = tl_v(n[0], n[1], n[2]);
+    return tl_v(n[0], n[1], n[2]);
+}
+
+static void keep_old(const tl_header *h, uint32_t c, old_points *old) {
     old->count = tl_contacts(h)[c].count;
-    for (uint32_t i = 0; i < old->count; i++) {
-        old->id[i] = points->p[i].id;
-        old->impulse[i] = points->p[i].impulse;
-        old->at[i] = tl_v(points->p[i].a[0], points->p[i].a[1], points->p[i].a[2]);
-    }
+    old->of = tl_points(h)[c];
+    old->normal = normal_of(h, c);
 }
 
 static float impulse_of(const old_points *old, uint32_t id) {
     for (uint32_t i = 0; i < old->count; i++) {
-        if (old->id[i] == id) {
-            return old->impulse[i];
+        if (old->of.p[i].id == id) {
+            return old->of.p[i].impulse;
         }
     }
     return 0.0f;
 }
-
-#define FACE_POINTS 3u
-#define SAME_NORMAL 0.985f /* the cosine of 10 degrees */
-#define FLAT 1e-3f         /* of points nearly on a line nothing is known across it */
 
 static int has_id(const tl_contact_points *points, uint32_t count, uint32_t id) {
     for (uint32_t k = 0; k < count; k++) {
@@ -49,6 +44,74 @@ static int has_id(const tl_contact_points *points, uint32_t count, uint32_t id) 
     return 0;
 }
 
+static talus_vec3 place_on_a(const tl_contact_point_record *r) { return tl_v(r->a[0], r->a[1], r->a[2]); }
+
+/* The mass frames of a contact's bodies in the world, and its normal there. */
+typedef struct contact_frames {
+    talus_pose a, b;
+    talus_vec3 normal;
+} contact_frames;
+
+static talus_pose mass_frame(const tl_header *h, uint32_t body) {
+    talus_pose world = {{0.0f, 0.0f, 0.0f}, tl_quat_identity()};
+    return tl_body_is_fixed(h, body) ? world : tl_row_pose_of(&tl_body_pose(h)[body]);
+}
+
+static contact_frames frames_of(const tl_header *h, uint32_t c) {
+    const tl_contact_meta *meta = &tl_contacts(h)[c];
+    contact_frames f = {mass_frame(h, meta->body_a), mass_frame(h, meta->body_b), tl_v(0.0f, 0.0f, 0.0f)};
+    f.normal = tl_rotate(f.a.rotation, normal_of(h, c));
+    return f;
+}
+
+/* From a point's place on a to the one on b, in the world. */
+static talus_vec3 way_of(const contact_frames *f, const tl_contact_point_record *r) {
+    talus_vec3 a = tl_rotate(f->a.rotation, place_on_a(r));
+    talus_vec3 b = tl_rotate(f->b.rotation, tl_v(r->b[0], r->b[1], r->b[2]));
+    return tl_add(tl_sub(f->b.position, f->a.position), tl_sub(b, a));
+}
+
+#define SAME_NORMAL 0.985f /* the cosine of 10 degrees */
+
+/* Which points of two polyhedra make their manifold is a choice: either of two faces all but flush may be the
+ * reference, four are taken of more corners, and a corner of three faces lies on one of them at a time. A point that is
+ * left out bears nothing any more, the body sinks there until the next manifold has it again and leaves out another,
+ * and so bodies shake with every step, and the pile with them. Hence a point stays while its surfaces overlap or are
+ * nearer than the slack and have not slid by more than that, beside the others or in place of one that bears nothing
+ * and is farther apart. Returns how many points there are then. */
+static uint32_t keep_point(tl_header *h, uint32_t c, const old_points *old, uint32_t i, uint32_t count) {
+    const tl_contact_meta *meta = &tl_contacts(h)[c];
+    const talus_geometry *shapes = tl_shape_geometry(h);
+    tl_contact_points *points = &tl_points(h)[c];
+    if (shapes[meta->shape_a].type < TALUS_BOX || shapes[meta->shape_b].type < TALUS_BOX ||
+        tl_dot(old->normal, normal_of(h, c)) < SAME_NORMAL) {
+        return count;
+    }
+    contact_frames f = frames_of(h, c);
+    talus_vec3 way = way_of(&f, &old->of.p[i]);
+    float gap = tl_dot(f.normal, way), slack = h->settings.recycle_slack, most = gap;
+    talus_vec3 slid = tl_mad(way, -gap, f.normal);
+    if (gap > slack || tl_dot(slid, slid) > slack * slack) {
+        return count;
+    }
+    uint32_t at = TL_NONE;
+    for (uint32_t k = 0; k < count; k++) {
+        float apart = tl_dot(f.normal, way_of(&f, &points->p[k]));
+        if (points->p[k].impulse == 0.0f && apart > most) {
+            most = apart;
+            at = k;
+        }
+    }
+    at = count < TL_MANIFOLD_POINTS ? count++ : at;
+    if (at != TL_NONE) {
+        points->p[at] = old->of.p[i];
+    }
+    return count;
+}
+
+#define FACE_POINTS 3u
+#define FLAT 1e-3f /* of points nearly on a line nothing is known across it */
+
 /* Of the many points of two faces on each other four are kept, and not always the same. What those bore that are gone
  * is handed on to all that are there now, with the same sum and the same moments: x / n + M^-1 d, where d are places
  * from the middle and M the sum of d d^T. n is the normal in the frame of the points. */
@@ -57,9 +120,9 @@ static void hand_on(const old_points *old, tl_contact_points *points, uint32_t c
     float lost = 0.0f, share = 1.0f / (float)count, uu = 0.0f, uv = 0.0f, vv = 0.0f, x[TL_MANIFOLD_POINTS],
           y[TL_MANIFOLD_POINTS];
     for (uint32_t i = 0; i < old->count; i++) {
-        if (old->impulse[i] > 0.0f && !has_id(points, count, old->id[i])) {
-            lost += old->impulse[i];
-            moment = tl_mad(moment, old->impulse[i], old->at[i]);
+        if (old->of.p[i].impulse > 0.0f && !has_id(points, count, old->of.p[i].id)) {
+            lost += old->of.p[i].impulse;
+            moment = tl_mad(moment, old->of.p[i].impulse, place_on_a(&old->of.p[i]));
         }
     }
     if (!(lost > 0.0f) || old->count < FACE_POINTS || count < FACE_POINTS || tl_dot(old->normal, n) < SAME_NORMAL) {
@@ -92,6 +155,34 @@ static void hand_on(const old_points *old, tl_contact_points *points, uint32_t c
     }
 }
 
+#define SAME_PLACE 0.1f /* of the speculative margin */
+
+/* Whether a point of a manifold lies where another one does. */
+static int has_place(const tl_header *h, const tl_contact_points *points, uint32_t count,
+                     const tl_contact_point_record *r) {
+    float reach = SAME_PLACE * h->settings.speculative_margin;
+    for (uint32_t k = 0; k < count; k++) {
+        talus_vec3 way = tl_sub(place_on_a(&points->p[k]), place_on_a(r));
+        if (tl_dot(way, way) < reach * reach) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* What becomes of the points that a new manifold of `count` points does not have: they stay, or what they bore is
+ * handed on. Returns how many points there are then. */
+static uint32_t carry_over(tl_header *h, uint32_t c, const old_points *old, uint32_t count) {
+    tl_contact_points *points = &tl_points(h)[c];
+    for (uint32_t i = 0; i < old->count; i++) {
+        if (!has_id(points, count, old->of.p[i].id) && !has_place(h, points, count, &old->of.p[i])) {
+            count = keep_point(h, c, old, i, count);
+        }
+    }
+    hand_on(old, points, count, normal_of(h, c));
+    return count;
+}
+
 /* Puts a manifold, given in shape a's frame, into the bodies' mass frames; pa and pb are the shapes in the world. */
 static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const talus_pose *b_in_a,
                            const talus_pose *pa, const talus_pose *pb) {
@@ -113,13 +204,12 @@ static void store_manifold(tl_header *h, uint32_t c, const tl_manifold *m, const
         r->id = p->id;
         r->impulse = impulse_of(&old, p->id);
     }
-    talus_vec3 n = tl_rotate(place_a.rotation, m->normal);
-    hand_on(&old, points, m->count, n);
     if (m->count < old.count) {
         memset(&points->p[m->count], 0, (old.count - m->count) * sizeof points->p[0]);
     }
+    talus_vec3 n = tl_rotate(place_a.rotation, m->normal);
     head->normal[0] = n.x, head->normal[1] = n.y, head->normal[2] = n.z;
-    meta->count = m->count;
+    meta->count = carry_over(h, c, &old, m->count);
 }
 
 static void kept_until_moved(tl_header *h, tl_contact_meta *meta) {
@@ -263,10 +353,8 @@ static void store_boxes(tl_step *step, const tl_pair_batch *batch, const tl_box_
         for (uint32_t i = 0; i < TL_MANIFOLD_POINTS; i++) {
             memcpy(&tl_points(h)[c].p[i], &out->point[i][k], sizeof out->point[i][k]);
         }
-        const float *n = out->normal[k].f;
-        hand_on(&old, &tl_points(h)[c], count, tl_v(n[0], n[1], n[2]));
         memcpy(tl_heads(h)[c].normal, out->normal[k].f, 3u * sizeof(float));
-        tl_contacts(h)[c].count = count;
+        tl_contacts(h)[c].count = carry_over(h, c, &old, count);
         kept_until_moved(h, &tl_contacts(h)[c]);
     }
 }

@@ -213,10 +213,11 @@ static void prepare_grip(tl_contact_group *g, v8 slid, v8 t1, v8 t2) {
     tl_f8_store(g->slid[1], v8_dot(slid, t2));
 }
 
-/* Lifts what does not slide, by what its least loaded point asks for: where that bears little, more would open the
- * manifold there. `lift` is that of the last step; it is never more than what the whole load asks for. */
+/* Lifts what does not slide, by what its least loaded point asks for: more would open the manifold there. `lift` is
+ * that of the last step; it goes at once where it would be more, for the force of a point that is lifted by more than
+ * it bears jumps to nothing as its gap opens, and it would chatter. */
 static void prepare_lift(const tl_step *step, tl_contact_group *g, tl_f8 lift) {
-    tl_f8 zero = tl_f8_zero(), spring = tl_f8_set1(step->spring), all = zero, least = tl_f8_set1(1.0f); /* m */
+    tl_f8 zero = tl_f8_zero(), spring = tl_f8_set1(step->spring), least = tl_f8_set1(1.0f); /* m */
     spring = g->plane ? tl_f8_mul(spring, tl_f8_load(g->stiff)) : spring;
     uint32_t face = LIFT_POINTS - (g->plane != 0);
     if (g->points < face) {
@@ -227,14 +228,12 @@ static void prepare_lift(const tl_step *step, tl_contact_group *g, tl_f8 lift) {
         tl_f8 k = tl_f8_mul(tl_f8_load(g->point[i].mass), spring);
         tl_f8 depth = tl_f8_mul(tl_f8_load(g->point[i].impulse), inverse_or_zero(k));
         least = tl_f8_select(tl_f8_gt(k, zero), tl_f8_min(depth, least), least);
-        all = tl_f8_add(all, k);
     }
-    all = tl_f8_mul(pressure_of(g), inverse_or_zero(all));
     tl_m8 rests = tl_f8_gt(tl_f8_mul(tl_f8_load(g->point[face - 1u].mass), tl_f8_load(g->held)), zero);
     tl_f8 wanted = tl_f8_mul(tl_f8_sub(least, tl_f8_set1(LIFT_DEPTH)), tl_f8_set1(LIFT_SHARE));
     wanted = tl_f8_and_mask(rests, tl_f8_max(tl_f8_min(wanted, tl_f8_set1(PUSH_DEPTH)), zero));
     lift = tl_f8_mad(lift, tl_f8_set1(LIFT_RATE * step->dt), tl_f8_sub(wanted, lift));
-    lift = tl_f8_min(lift, all);
+    lift = tl_f8_min(lift, least);
     tl_m8 any = tl_f8_gt(lift, tl_f8_set1(LEAST_LIFT));
     tl_f8_store(g->lift, tl_f8_and_mask(any, lift));
     g->depth |= tl_m8_any(any) ? TL_DEPTH_LIFTED : 0u;
