@@ -33,6 +33,7 @@ typedef struct tl_step {
     int first_substep;
     int stiff;       /* some body's moment of inertia counts as larger than it is */
     int again;       /* only what was far from its place is looked at */
+    int waits;       /* errors of what is exact may be left to a later sub-step of the step */
     int before_move; /* impulses are those before the bodies move */
     int skip_exact;  /* what is exact has been solved in this sub-step or will be in the next */
     int deferred;    /* of what is exact: this sub-step's impulses hold those of the last one's pass after its move */

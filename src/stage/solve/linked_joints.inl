@@ -110,6 +110,7 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
             far = tl_m8_or(far, tl_f8_gt(tl_f8_abs(error), most));
         }
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(far) ? (uint32_t)TL_FAR_NOW : 0u);
+        g->far |= step->waits && g->exact && is_near(g, rows) ? (uint32_t)TL_FAR_NOT : 0u;
         for (uint32_t k = g->fixed; k < g->linked; k++) {
             far = tl_m8_or(far, push_range(g, rows, k, &p));
         }
@@ -161,7 +162,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
-        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN)) || (step->waits && g->far & TL_FAR_NOT)) {
             continue;
         }
         pair_velocity p;
@@ -176,7 +177,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
 static void solve_linkages(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         const tl_linkage *l = &tl_linkages(step->h)[i];
-        if ((step->again && !l->far) || (step->skip_exact && l->exact)) {
+        if ((step->again && !l->far) || (step->skip_exact && l->exact) || (step->waits && l->near)) {
             continue;
         }
         if (l->cuts) {
