@@ -193,6 +193,7 @@ static void solve(tl_step *step, tl_watch *w) {
     tl_stage_joint_groups(step);
     tl_stage_find_presses(step);
     k->prepare_contacts(step, 0, h->groups);
+    k->prepare_joints(step, 0, h->joint_groups);
     k->begin_presses(step, 0, h->presses);
     uint32_t bouncing = 0, rolling = 0, pushed = 0;
     step->pushes = h->joint_groups > 0 || h->presses > 0;

@@ -39,7 +39,7 @@ static inline k8 k8_load(const float k[9][TL_LANES]) {
 
 /* K stays as it is for a step. */
 static void keep_frames(const tl_step *step, tl_joint_group *g) {
-    const float *frames = tl_row_frame(step->h)->f;
+    const float *frames = tl_row_frame(step->h)->f, *velocities = tl_row_velocity(step->h)->f;
     tl_f8 r[8];
     for (uint32_t side = 0; side < 2u; side++) {
         tl_f8_load_rows(frames, side ? g->b : g->a, r);
@@ -47,6 +47,66 @@ static void keep_frames(const tl_step *step, tl_joint_group *g) {
         v8_store(g->k[side][0], k.x);
         v8_store(g->k[side][3], k.y);
         v8_store(g->k[side][6], k.z);
+        tl_f8_load_rows(velocities, side ? g->b : g->a, r);
+        tl_f8_store(g->mass[side], r[6]);
+    }
+}
+
+/* Frame a in the world. */
+static inline q8 frame_of(const tl_step *step, const tl_joint_group *g) {
+    tl_f8 r[8];
+    tl_f8_load_rows(tl_row_pose(step->h)->f, g->a, r);
+    q8 own = q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3]));
+    return q8_mul(q8_of(r[3], r[4], r[5], r[6]), own);
+}
+
+/* The impulses of rows that hold a point, from frame a's axes to the world's. */
+static inline void impulses_to_world(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows) {
+    v8 along = v8_of(tl_f8_load(rows[0].impulse), tl_f8_load(rows[1].impulse), tl_f8_load(rows[2].impulse));
+    v8 impulse = q8_rotate(frame_of(step, g), along);
+    tl_f8_store(rows[0].impulse, impulse.x);
+    tl_f8_store(rows[1].impulse, impulse.y);
+    tl_f8_store(rows[2].impulse, impulse.z);
+}
+
+/* |arm| over the least moment of inertia about an axis across it; 0 for a body without a row. */
+static tl_f8 give_of(const tl_header *h, const uint32_t row[TL_LANES], v8 arm) {
+    uint32_t body[TL_LANES], moves = 0;
+    tl_f8 in[8], zero = tl_f8_zero();
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        body[k] = row[k] ? tl_awake_body(h)[row[k] - 1u] : 0u;
+        moves |= (uint32_t)(row[k] != 0) << k;
+    }
+    tl_f8_load_rows(&tl_body_inertias(h)->inverse_mass, body, in);
+    tl_f8 square = v8_dot(arm, arm), x = tl_f8_sub(square, tl_f8_mul(arm.x, arm.x));
+    tl_f8 y = tl_f8_sub(square, tl_f8_mul(arm.y, arm.y)), z = tl_f8_sub(square, tl_f8_mul(arm.z, arm.z));
+    tl_f8 most = tl_f8_max(tl_f8_mul(tl_f8_mul(in[1], in[1]), x), tl_f8_mul(tl_f8_mul(in[2], in[2]), y));
+    most = tl_f8_max(most, tl_f8_mul(tl_f8_mul(in[3], in[3]), z));
+    tl_m8 ok = tl_m8_and(tl_f8_gt(square, zero), tl_m8_from_bits(moves));
+    return tl_f8_and_mask(ok, tl_f8_div(most, tl_f8_select(ok, tl_f8_sqrt(square), tl_f8_set1(1.0f))));
+}
+
+/* Whether a joint of the group pulls hard enough to be looked at. */
+static void note_pull(const tl_step *step, tl_joint_group *g, tl_f8 pull) {
+    tl_f8 give = tl_f8_max(tl_f8_load(g->give[0]), tl_f8_load(g->give[1]));
+    tl_f8_store(g->pull, pull);
+    g->stiff = (uint32_t)tl_m8_any(tl_f8_gt(tl_f8_mul(pull, give), tl_f8_set1(TL_STIFF_PULL * step->inverse_sub)));
+}
+
+/* What stays as it is for a step, and the impulses and pulls that the last step ended with. */
+static void prepare_joints(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        keep_frames(step, g);
+        if (g->needs & TL_JOINT_POINT) {
+            impulses_to_world(step, g, tl_joint_row_pool(step->h) + g->first_row);
+        }
+        if (g->linked) {
+            v8 force = v8_load(g->x[0]);
+            tl_f8_store(g->give[0], give_of(step->h, g->a, v8_load(g->pa[0])));
+            tl_f8_store(g->give[1], give_of(step->h, g->b, v8_load(g->pb[0])));
+            note_pull(step, g, tl_f8_mul(tl_f8_sqrt(v8_dot(force, force)), tl_f8_set1(step->sub)));
+        }
     }
 }
 
@@ -284,11 +344,8 @@ static inline v8 v8_finite_or_zero(v8 a) {
 
 /* The impulses of rows that hold a point, from the world's axes to frame a's. */
 static inline void impulses_to_frame(const tl_step *step, const tl_joint_group *g, tl_f8 impulse[3]) {
-    tl_f8 r[8];
-    tl_f8_load_rows(tl_row_pose(step->h)->f, g->a, r);
-    q8 own = q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3]));
-    q8 frame = q8_mul(q8_of(r[3], r[4], r[5], r[6]), own);
-    v8 back = v8_finite_or_zero(q8_rotate_back(frame, v8_of(impulse[0], impulse[1], impulse[2])));
+    v8 along = v8_of(impulse[0], impulse[1], impulse[2]);
+    v8 back = v8_finite_or_zero(q8_rotate_back(frame_of(step, g), along));
     impulse[0] = back.x, impulse[1] = back.y, impulse[2] = back.z;
 }
 

@@ -277,7 +277,6 @@ static void begin_joints(const tl_step *step, uint32_t first, uint32_t last) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        keep_frames(step, g);
         make_joint_rows(step, g);
         load_pair(velocities, g->a, g->b, &p);
         apply_all(g, rows, &p, 1.0f, ROW_AXIS + 3);

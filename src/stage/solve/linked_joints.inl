@@ -117,14 +117,6 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
     }
 }
 
-/* Whether a joint of the group pulls hard enough to be looked at. */
-static void note_pull(const tl_step *step, tl_joint_group *g, v8 impulse) {
-    tl_f8 pull = tl_f8_sqrt(v8_dot(impulse, impulse));
-    tl_f8 give = tl_f8_max(tl_f8_load(g->give[0]), tl_f8_load(g->give[1]));
-    tl_f8_store(g->pull, pull);
-    g->stiff = (uint32_t)tl_m8_any(tl_f8_gt(tl_f8_mul(pull, give), tl_f8_set1(TL_STIFF_PULL * step->inverse_sub)));
-}
-
 /* Impulses to the bodies. A range that would have to pull is let go, and its linkage noted for another round. */
 static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
@@ -153,7 +145,7 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
             pull = linear ? v8_mad(pull, now, v8_load(rows[k].n[0])) : pull;
         }
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(pulls) ? (uint32_t)TL_FAR_NOW : 0u);
-        note_pull(step, g, pull);
+        note_pull(step, g, tl_f8_sqrt(v8_dot(pull, pull)));
         store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
 }
