@@ -261,13 +261,27 @@ TL_INLINE void matrix_row(const joint_bodies *c, const tl_joint_group *g, const 
     }
 }
 
-static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
-    for (uint32_t i = 0; i < g->linked; i++) {
+TL_INLINE void fill_matrix_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t n) {
+    for (uint32_t i = 0; i < n; i++) {
         tl_f8 row[6];
         matrix_row(c, g, rows, i, row);
         for (uint32_t j = 0; j <= i; j++) {
             tl_f8_store(g->matrix[i * (i + 1u) / 2u + j], row[j]);
         }
+    }
+}
+
+/* The usual numbers are compiled on their own. */
+static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
+    switch (g->linked) {
+    case 3:
+        fill_matrix_of(c, g, rows, 3u);
+        break;
+    case 5:
+        fill_matrix_of(c, g, rows, 5u);
+        break;
+    default:
+        fill_matrix_of(c, g, rows, g->linked);
     }
 }
 
