@@ -3,6 +3,12 @@
 
 #include "stage/solve/cuts.inl"
 
+/* Linked joints have both sides. */
+TL_INLINE void load_linked_pair(const float *velocities, const tl_joint_group *g, pair_velocity *p) {
+    load_pair(velocities, g->a, g->b, p);
+    p->sides = TL_JOINT_A | TL_JOINT_B;
+}
+
 static inline tl_m8 is_hard(const tl_joint_row *row) {
     return tl_f8_eq(tl_f8_add(tl_f8_load(row->stiffness), tl_f8_load(row->damping)), tl_f8_zero());
 }
@@ -63,7 +69,7 @@ static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) 
             continue;
         }
         pair_velocity p;
-        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        load_linked_pair(tl_row_velocity(step->h)->f, g, &p);
         for (uint32_t k = 0; k < g->fixed; k++) {
             tl_f8 speed = speed_to_meet(g, rows, k, &p);
             speed = step->before_move ? speed_before_move(step, g, rows, k, speed) : speed;
@@ -100,7 +106,7 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
             continue;
         }
         pair_velocity p;
-        load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
+        load_linked_pair(tl_row_push(step->h)->f, g, &p);
         tl_m8 far = tl_m8_zero();
         for (uint32_t k = 0; k < g->fixed; k++) {
             tl_f8 error = error_to_meet(step, g, rows, k);
@@ -126,7 +132,7 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
             continue;
         }
         pair_velocity p;
-        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        load_linked_pair(tl_row_velocity(step->h)->f, g, &p);
         v8 pull = v8_zero();
         tl_m8 pulls = tl_m8_zero();
         for (uint32_t k = 0; k < g->linked; k++) {
@@ -158,7 +164,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
             continue;
         }
         pair_velocity p;
-        load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
+        load_linked_pair(tl_row_push(step->h)->f, g, &p);
         for (uint32_t k = 0; k < g->linked; k++) {
             joint_apply(&p, &rows[k], row_kind(g, k), tl_f8_load(g->x[k]));
         }

@@ -99,7 +99,9 @@ typedef struct tl_joint_row {
 enum {
     TL_JOINT_POINT = 1, /* the first three rows hold a point and are along the world's axes; their impulses are kept
                          * along frame a, as others are */
-    TL_JOINT_AXES = 2   /* others are along frame a or tell how it stands to frame b */
+    TL_JOINT_AXES = 2,  /* others are along frame a or tell how it stands to frame b */
+    TL_JOINT_A = 4,     /* some body a has a row, */
+    TL_JOINT_B = 8      /* some body b; a side on which none has is left out, unless the group is linked */
 };
 
 /* joint_group.far: an error is so large that taking it back leaves one; the group is pushed again; errors are so small
