@@ -327,25 +327,20 @@ static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint
 TL_INLINE void factor_equalities_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t n) {
     tl_f8 l[21], d[6];
     for (uint32_t i = 0; i < n; i++) {
-        tl_f8 row[6];
+        tl_f8 row[6]; /* of the matrix, then of L D */
         matrix_row(c, g, rows, i, row);
-        for (uint32_t j = 0; j <= i; j++) {
-            tl_f8 k = row[j], whole = k;
-            for (uint32_t m = 0; m < j; m++) { /* l[i][m] holds L D until the row is done */
-                tl_f8 other = j == i ? tl_f8_mul(l[i * (i + 1u) / 2u + m], d[m]) : l[j * (j + 1u) / 2u + m];
-                k = tl_f8_sub(k, tl_f8_mul(l[i * (i + 1u) / 2u + m], other));
-            }
-            if (j < i) {
-                l[i * (i + 1u) / 2u + j] = k;
-            } else {
-                tl_m8 ok = tl_f8_gt(k, tl_f8_mul(whole, tl_f8_set1(LEAST_PIVOT)));
-                d[i] = tl_f8_and_mask(ok, inverse_or_zero(k));
-                for (uint32_t m = 0; m < i; m++) {
-                    l[i * (i + 1u) / 2u + m] = tl_f8_mul(l[i * (i + 1u) / 2u + m], d[m]);
-                }
-                l[i * (i + 1u) / 2u + i] = d[i];
+        for (uint32_t j = 0; j < i; j++) {
+            for (uint32_t m = 0; m < j; m++) {
+                row[j] = tl_f8_sub(row[j], tl_f8_mul(row[m], l[j * (j + 1u) / 2u + m]));
             }
         }
+        tl_f8 k = row[i];
+        for (uint32_t j = 0; j < i; j++) {
+            l[i * (i + 1u) / 2u + j] = tl_f8_mul(row[j], d[j]);
+            k = tl_f8_sub(k, tl_f8_mul(row[j], l[i * (i + 1u) / 2u + j]));
+        }
+        tl_m8 ok = tl_f8_gt(k, tl_f8_mul(row[i], tl_f8_set1(LEAST_PIVOT)));
+        l[i * (i + 1u) / 2u + i] = d[i] = tl_f8_and_mask(ok, inverse_or_zero(k));
     }
     for (uint32_t i = 0; i < n * (n + 1u) / 2u; i++) {
         tl_f8_store(g->matrix[i], l[i]);
