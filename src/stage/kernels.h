@@ -33,6 +33,7 @@ typedef struct tl_step {
     int first_substep;
     int stiff;       /* some body's moment of inertia counts as larger than it is */
     int again;       /* only what was far from its place is looked at */
+    int waits;       /* errors of what is exact may be left to a later sub-step of the step */
     int before_move; /* impulses are those before the bodies move */
     int skip_exact;  /* what is exact has been solved in this sub-step or will be in the next */
     int deferred;    /* of what is exact: this sub-step's impulses hold those of the last one's pass after its move */
@@ -47,8 +48,9 @@ typedef struct tl_kernels {
     void (*collide_boxes)(const tl_step *step, const tl_pair_batch *batch, tl_box_manifolds *out);
     tl_kernel fill_bodies, velocity, position, fly, push, commit; /* ranges of eight body rows */
     tl_kernel prepare_contacts, warm_contacts, solve_contacts, relax_contacts, push_contacts, strike_contacts,
-        store_contacts;                                                                         /* groups */
-    tl_kernel begin_joints, turn_joints, solve_joints, relax_joints, push_joints, store_joints; /* joint groups */
+        store_contacts; /* groups */
+    tl_kernel prepare_joints, begin_joints, turn_joints, solve_joints, relax_joints, push_joints,
+        store_joints;                                                     /* joint groups */
     tl_kernel read_velocities, read_errors, apply_impulses, apply_pushes; /* linked joint groups */
     tl_kernel solve_linkages;                                             /* linkages */
     tl_kernel begin_presses;                  /* presses: their rows, from the prepared groups; */

@@ -26,6 +26,9 @@ void tl_stage_find_presses(tl_step *step);
  * any. Those that share groups are marked together. */
 int tl_stage_far_linkages(tl_header *h);
 
+/* Leaves those linkages marked as near in which all joints are. Those that share groups are near together. */
+void tl_stage_near_linkages(tl_header *h);
+
 /* Joints that pull at a body are a spring against its turning, the stiffer the harder they pull (the geometric
  * stiffness of Tournier, Nesme, Gilles and Faure, "Stable constrained dynamics", SIGGRAPH 2015). The sub-steps follow
  * it up to h^2 k / I = 4; beyond TL_MOST_STIFF the moment of inertia counts as so much larger (Andrews, Teichmann and

@@ -33,6 +33,7 @@ static void set_level(tl_step *step, uint32_t level) {
     step->inverse_sub = 1.0f / step->sub;
     step->warm_scale = step->sub_before > 0.0f ? step->sub / step->sub_before : 1.0f;
     step->any_locks = step->skip_exact = step->deferred = step->before_move = step->stiff = step->again = 0;
+    step->waits = 0;
     step->pushes = 0;
     set_softness(step);
 }
@@ -71,6 +72,9 @@ static void strike(tl_step *step, const tl_kernels *k) {
 static void run_linkages(const tl_step *step, const tl_kernels *k, tl_kernel read, tl_kernel apply) {
     if (step->h->linkages) {
         read(step, 0, step->h->joint_groups);
+        if (step->waits) {
+            tl_stage_near_linkages(step->h);
+        }
         k->solve_linkages(step, 0, step->h->linkages);
         apply(step, 0, step->h->joint_groups);
     }
@@ -99,14 +103,16 @@ static void push_bodies(tl_step *step, const tl_kernels *k) {
     k->push(step, 0, step->rows);
 }
 
-/* Displacements that take errors back. */
-static void push_back(tl_step *step, const tl_kernels *k) {
+/* Displacements that take errors back; in the last sub-step of a step also those that are hardly any. */
+static void push_back(tl_step *step, const tl_kernels *k, int last) {
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups;
     if (step->pushes) {
+        step->waits = !last;
         k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
         run_linkages(step, k, k->read_errors, k->apply_pushes);
+        step->waits = 0;
         k->press_errors(step, 0, h->presses);
         push_bodies(step, k);
     }
@@ -158,7 +164,7 @@ static void run_substep(tl_step *step, const tl_kernels *k, uint32_t i, tl_watch
     tl_watch_lap(w, TALUS_STAGE_POSITION);
     tl_stage_stiffness(step);
     k->turn_joints(step, 0, joints);
-    push_back(step, k);
+    push_back(step, k, last);
     if (step->bounces) {
         tl_watch_lap(w, TALUS_STAGE_RELAX);
         strike(step, k);
@@ -187,6 +193,7 @@ static void solve(tl_step *step, tl_watch *w) {
     tl_stage_joint_groups(step);
     tl_stage_find_presses(step);
     k->prepare_contacts(step, 0, h->groups);
+    k->prepare_joints(step, 0, h->joint_groups);
     k->begin_presses(step, 0, h->presses);
     uint32_t bouncing = 0, rolling = 0, pushed = 0;
     step->pushes = h->joint_groups > 0 || h->presses > 0;

@@ -82,12 +82,19 @@ static int has_room(const tl_header *h, uint32_t body, uint32_t way) {
 }
 
 /* Those who call this renew or lessen the body's room. */
-static void note_looked(tl_header *h, uint32_t shape, float free) {
+static void note_looked(tl_header *h, uint32_t shape, const talus_aabb *box, float free) {
     tl_shape_track *t = &tl_shape_tracks(h)[shape];
     uint32_t body = tl_shapes(h)[shape].body;
     t->motion = tl_body_motion(h)[body];
     t->free = tl_min(free, MOST_FREE);
     t->stale = 0;
+    tl_shape_bounds(h)[shape] = *box;
+}
+
+/* The box of a shape that was looked at since it was last changed: as it was then, if the body has not moved since. */
+static talus_aabb box_now(const tl_header *h, const void *geometry, uint32_t shape) {
+    int still = tl_shape_tracks(h)[shape].motion == tl_body_motion(h)[tl_shapes(h)[shape].body];
+    return still ? tl_shape_bounds(h)[shape] : tl_shape_box(h, geometry, shape);
 }
 
 static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt) {
@@ -103,7 +110,7 @@ static void enter(tl_header *h, uint32_t shape, const talus_aabb *box, float dt)
         t->still = still;
         t->node = tl_tree_insert(h, tree, shape, &t->fat) + 1u;
     }
-    note_looked(h, shape, margin_of(h, shape));
+    note_looked(h, shape, box, margin_of(h, shape));
     h->counters.proxies_refit++;
 }
 
@@ -160,7 +167,7 @@ static int stays(tl_header *h, uint32_t shape, const talus_aabb *box, float dt) 
     if (!t->node || !tl_aabb_contains(&t->fat, &swept)) {
         return 0;
     }
-    note_looked(h, shape, free_within(h, &t->fat, box));
+    note_looked(h, shape, box, free_within(h, &t->fat, box));
     return 1;
 }
 
@@ -187,7 +194,7 @@ void tl_stage_refit(tl_header *h, const void *geometry, float dt) {
             if (tl_shape_tracks(h)[s].moved || has_hardly_moved(h, body, s, way)) {
                 continue;
             }
-            talus_aabb box = tl_shape_box(h, geometry, s);
+            talus_aabb box = box_now(h, geometry, s);
             if (!stays(h, s, &box, dt)) {
                 enter(h, s, &box, dt);
                 tl_shape_mark_moved(h, s);
@@ -210,7 +217,7 @@ void tl_stage_leave(tl_header *h, const void *geometry) {
             }
             talus_aabb box = tl_shape_box(h, geometry, s);
             if (tl_aabb_contains(&t->fat, &box)) {
-                note_looked(h, s, free_within(h, &t->fat, &box));
+                note_looked(h, s, &box, free_within(h, &t->fat, &box));
             } else {
                 tl_shape_mark_moved(h, s);
             }

@@ -87,7 +87,7 @@ typedef struct rows8 {
 } rows8;
 
 /* Forces, damping, and the impulses of the last sub-step. */
-static inline void speed_up(const tl_step *step, rows8 *r, int first_substep) {
+TL_INLINE void speed_up(const tl_step *step, rows8 *r, int first_substep) {
     tl_f8 h = tl_f8_set1(step->sub), *v = r->velocity, *b = r->before;
     for (int k = 0; k < 6; k++) {
         tl_f8 warm = first_substep ? b[k] : tl_f8_sub(v[k], b[k]);
@@ -140,7 +140,7 @@ TL_INLINE void gyroscope(const tl_step *step, rows8 *r, tl_m8 gyro, q8 frame, q8
 }
 
 /* The poses of the next sub-step; `gyro` are the lanes with a gyroscopic term. */
-static inline void move_on(const tl_step *step, rows8 *r, tl_m8 gyro) {
+TL_INLINE void move_on(const tl_step *step, rows8 *r, tl_m8 gyro) {
     tl_f8 h = tl_f8_set1(step->sub), *v = r->velocity, *p = r->pose;
     for (int k = 0; k < 6; k++) {
         v[k] = cut(v[k]);
@@ -150,8 +150,11 @@ static inline void move_on(const tl_step *step, rows8 *r, tl_m8 gyro) {
         p[k] = tl_f8_mad(p[k], h, v[k]);
     }
     q8 q = q8_of(p[3], p[4], p[5], p[6]), frame = q8_of(r->frame[0], r->frame[1], r->frame[2], r->frame[3]);
-    v8 w = q8_rotate(frame, v8_mul(v8_of(r->frame[4], r->frame[5], r->frame[6]), v8_of(v[3], v[4], v[5])));
-    q8 turned = turned_by(q, q8_mul(turn_by(w, h), q));
+    q8 turned = q;
+    if (!tl_m8_all(gyro)) {
+        v8 w = q8_rotate(frame, v8_mul(v8_of(r->frame[4], r->frame[5], r->frame[6]), v8_of(v[3], v[4], v[5])));
+        turned = turned_by(q, q8_mul(turn_by(w, h), q));
+    }
     if (tl_m8_any(gyro)) {
         gyroscope(step, r, gyro, frame, &q, turned);
         turned = q;
@@ -251,11 +254,13 @@ static void push(const tl_step *step, uint32_t first, uint32_t last) {
         q8 turn = turn_by(w, tl_f8_set1(1.0f)), turned = turned_by(q, q8_mul(turn, q));
         /* A slender body's spin about its own axis turns with it: a little of the momentum across would be a lot there.
          */
-        v8 momentum = v8_of(l[0], l[1], l[2]);
         tl_m8 follows = tl_m8_and(pushed, tl_f8_gt(l[6], tl_f8_zero()));
-        momentum = v8_select(follows, q8_rotate(whole(turn), momentum), momentum);
-        l[0] = momentum.x, l[1] = momentum.y, l[2] = momentum.z;
-        store_eight(momenta + i, l);
+        if (tl_m8_any(follows)) {
+            v8 momentum = v8_of(l[0], l[1], l[2]);
+            momentum = v8_select(follows, q8_rotate(whole(turn), momentum), momentum);
+            l[0] = momentum.x, l[1] = momentum.y, l[2] = momentum.z;
+            store_eight(momenta + i, l);
+        }
         p[3] = tl_f8_select(pushed, turned.x, q.x), p[4] = tl_f8_select(pushed, turned.y, q.y);
         p[5] = tl_f8_select(pushed, turned.z, q.z), p[6] = tl_f8_select(pushed, turned.w, q.w);
         for (int k = 0; k < 6; k++) {

@@ -140,6 +140,7 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint
     }
     tl_joint_group *g = &tl_joint_group_pool(h)[h->joint_groups++];
     memset(g, 0, offsetof(tl_joint_group, k));
+    memset(g->x, 0, sizeof g->x);
     for (uint32_t k = 0; k < TL_LANES; k++) {
         g->qa[3][k] = g->qb[3][k] = 1.0f;
     }
@@ -157,18 +158,6 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint
     }
     h->joint_rows += j->rows;
     return g;
-}
-
-/* |arm| over the least moment of inertia about an axis across it; s are the roots of the inverse moments. */
-static float give_of(const tl_header *h, uint32_t body, talus_vec3 arm) {
-    const float *s = tl_body_inertias(h)[body].s;
-    float square = tl_dot(arm, arm), most = 0.0f;
-    if (!tl_body_row(h)[body] || !(square > 0.0f)) {
-        return 0.0f;
-    }
-    most = tl_max(s[0] * s[0] * (square - arm.x * arm.x), s[1] * s[1] * (square - arm.y * arm.y));
-    most = tl_max(most, s[2] * s[2] * (square - arm.z * arm.z));
-    return most / sqrtf(square);
 }
 
 void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint) {
@@ -205,20 +194,9 @@ void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint) 
         rows[r].stiffness[k] = p->stiffness, rows[r].damping[k] = p->damping;
         rows[r].speed[k] = p->speed, rows[r].most[k] = p->most, rows[r].per_mass[k] = p->per_mass;
     }
-    if (g->needs & TL_JOINT_POINT) {
-        talus_quat frame = tl_quat_mul(tl_row_quat(&tl_row_pose(h)[g->a[k]]), a.rotation);
-        talus_vec3 impulse = tl_rotate(frame, tl_v(rows[0].impulse[k], rows[1].impulse[k], rows[2].impulse[k]));
-        rows[0].impulse[k] = impulse.x, rows[1].impulse[k] = impulse.y, rows[2].impulse[k] = impulse.z;
+    for (uint32_t r = 0; r < 3u && g->linked; r++) {
+        g->x[r][k] = s->force[r];
     }
-    if (g->linked) {
-        g->give[0][k] = give_of(h, j->body_a, j->place_a.position);
-        g->give[1][k] = give_of(h, j->body_b, j->place_b.position);
-        g->pull[k] = tl_length(tl_v(s->force[0], s->force[1], s->force[2])) * step->sub;
-        g->stiff |= g->pull[k] * tl_max(g->give[0][k], g->give[1][k]) > TL_STIFF_PULL * step->inverse_sub;
-    }
-    const tl_row8 *velocities = tl_row_velocity(h);
-    g->mass[0][k] = velocities[g->a[k]].f[6], g->turns[0][k] = velocities[g->a[k]].f[7];
-    g->mass[1][k] = velocities[g->b[k]].f[6], g->turns[1][k] = velocities[g->b[k]].f[7];
     tl_row8 *moves = tl_row_moved(h);
     moves[g->a[k]].f[7] = moves[g->b[k]].f[7] = 1.0f;
 }

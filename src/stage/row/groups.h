@@ -15,7 +15,8 @@ int tl_joints_alike(const tl_joint_record *a, const tl_joint_record *b);
  * what their solve begins with is no matter to it. */
 tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint32_t direct);
 
-/* Puts a joint into the next lane of a group. */
+/* Puts a joint into the next lane of a group: what the joint and the state have of it, from which prepare_joints goes
+ * on. x of a linked group holds the joint's last force. */
 void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint);
 
 /* What linkage_of says of a joint beside its place in a linkage. */

@@ -9,6 +9,7 @@
 #include "base/trig_lanes.h"
 
 typedef struct joint_bodies {
+    uint32_t sides; /* TL_JOINT_A and TL_JOINT_B */
     v8 xa, xb;
     q8 qa, qb;
     k8 ka, kb;
@@ -39,7 +40,7 @@ static inline k8 k8_load(const float k[9][TL_LANES]) {
 
 /* K stays as it is for a step. */
 static void keep_frames(const tl_step *step, tl_joint_group *g) {
-    const float *frames = tl_row_frame(step->h)->f;
+    const float *frames = tl_row_frame(step->h)->f, *velocities = tl_row_velocity(step->h)->f;
     tl_f8 r[8];
     for (uint32_t side = 0; side < 2u; side++) {
         tl_f8_load_rows(frames, side ? g->b : g->a, r);
@@ -47,6 +48,75 @@ static void keep_frames(const tl_step *step, tl_joint_group *g) {
         v8_store(g->k[side][0], k.x);
         v8_store(g->k[side][3], k.y);
         v8_store(g->k[side][6], k.z);
+        tl_f8_load_rows(velocities, side ? g->b : g->a, r);
+        tl_f8_store(g->mass[side], r[6]);
+    }
+}
+
+/* Frame a in the world. */
+static inline q8 frame_of(const tl_step *step, const tl_joint_group *g) {
+    tl_f8 r[8];
+    tl_f8_load_rows(tl_row_pose(step->h)->f, g->a, r);
+    q8 own = q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3]));
+    return q8_mul(q8_of(r[3], r[4], r[5], r[6]), own);
+}
+
+/* The impulses of rows that hold a point, from frame a's axes to the world's. */
+static inline void impulses_to_world(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows) {
+    v8 along = v8_of(tl_f8_load(rows[0].impulse), tl_f8_load(rows[1].impulse), tl_f8_load(rows[2].impulse));
+    v8 impulse = q8_rotate(frame_of(step, g), along);
+    tl_f8_store(rows[0].impulse, impulse.x);
+    tl_f8_store(rows[1].impulse, impulse.y);
+    tl_f8_store(rows[2].impulse, impulse.z);
+}
+
+/* |arm| over the least moment of inertia about an axis across it; 0 for a body without a row. */
+static tl_f8 give_of(const tl_header *h, const uint32_t row[TL_LANES], v8 arm) {
+    uint32_t body[TL_LANES], moves = 0;
+    tl_f8 in[8], zero = tl_f8_zero();
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        body[k] = row[k] ? tl_awake_body(h)[row[k] - 1u] : 0u;
+        moves |= (uint32_t)(row[k] != 0) << k;
+    }
+    tl_f8_load_rows(&tl_body_inertias(h)->inverse_mass, body, in);
+    tl_f8 square = v8_dot(arm, arm), x = tl_f8_sub(square, tl_f8_mul(arm.x, arm.x));
+    tl_f8 y = tl_f8_sub(square, tl_f8_mul(arm.y, arm.y)), z = tl_f8_sub(square, tl_f8_mul(arm.z, arm.z));
+    tl_f8 most = tl_f8_max(tl_f8_mul(tl_f8_mul(in[1], in[1]), x), tl_f8_mul(tl_f8_mul(in[2], in[2]), y));
+    most = tl_f8_max(most, tl_f8_mul(tl_f8_mul(in[3], in[3]), z));
+    tl_m8 ok = tl_m8_and(tl_f8_gt(square, zero), tl_m8_from_bits(moves));
+    return tl_f8_and_mask(ok, tl_f8_div(most, tl_f8_select(ok, tl_f8_sqrt(square), tl_f8_set1(1.0f))));
+}
+
+/* Whether a joint of the group pulls hard enough to be looked at. */
+static void note_pull(const tl_step *step, tl_joint_group *g, tl_f8 pull) {
+    tl_f8 give = tl_f8_max(tl_f8_load(g->give[0]), tl_f8_load(g->give[1]));
+    tl_f8_store(g->pull, pull);
+    g->stiff = (uint32_t)tl_m8_any(tl_f8_gt(tl_f8_mul(pull, give), tl_f8_set1(TL_STIFF_PULL * step->inverse_sub)));
+}
+
+static uint32_t sides_of(const tl_joint_group *g) {
+    uint32_t a = g->linked, b = g->linked;
+    for (uint32_t k = 0; k < TL_LANES; k++) {
+        a |= g->a[k], b |= g->b[k];
+    }
+    return (a ? (uint32_t)TL_JOINT_A : 0u) | (b ? (uint32_t)TL_JOINT_B : 0u);
+}
+
+/* What stays as it is for a step, and the impulses and pulls that the last step ended with. */
+static void prepare_joints(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
+        g->needs |= sides_of(g);
+        keep_frames(step, g);
+        if (g->needs & TL_JOINT_POINT) {
+            impulses_to_world(step, g, tl_joint_row_pool(step->h) + g->first_row);
+        }
+        if (g->linked) {
+            v8 force = v8_load(g->x[0]);
+            tl_f8_store(g->give[0], give_of(step->h, g->a, v8_load(g->pa[0])));
+            tl_f8_store(g->give[1], give_of(step->h, g->b, v8_load(g->pb[0])));
+            note_pull(step, g, tl_f8_mul(tl_f8_sqrt(v8_dot(force, force)), tl_f8_set1(step->sub)));
+        }
     }
 }
 
@@ -66,25 +136,36 @@ static void load_joint_frames(const tl_joint_group *g, joint_bodies *c) {
 static void load_joint_bodies(const tl_step *step, const tl_joint_group *g, joint_bodies *c) {
     tl_f8 r[8];
     const float *poses = tl_row_pose(step->h)->f, *velocities = tl_row_velocity(step->h)->f;
-    tl_f8_load_rows(poses, g->a, r);
-    c->qa = q8_of(r[3], r[4], r[5], r[6]);
-    c->xa = v8_of(r[0], r[1], r[2]);
-    tl_f8_load_rows(poses, g->b, r);
-    c->qb = q8_of(r[3], r[4], r[5], r[6]);
-    c->xb = v8_of(r[0], r[1], r[2]);
+    tl_f8 zero = tl_f8_zero(), one = tl_f8_set1(1.0f), h = tl_f8_set1(step->sub);
+    v8 bend_a = v8_zero(), bend_b = v8_zero();
+    c->sides = g->needs;
+    c->xa = c->xb = v8_zero();
+    c->qa = c->qb = q8_of(zero, zero, zero, one);
+    c->pa = v8_load(g->pa[0]), c->pb = v8_load(g->pb[0]);
+    c->ma = c->ta = c->mb = c->tb = zero;
     c->ka = k8_load(g->k[0]);
     c->kb = k8_load(g->k[1]);
-    v8 ra = q8_rotate(c->qa, v8_load(g->pa[0])), rb = q8_rotate(c->qb, v8_load(g->pb[0]));
-    c->pa = v8_add(c->xa, ra);
-    c->pb = v8_add(c->xb, rb);
-    tl_f8_load_rows(velocities, g->a, r);
-    v8 wa = k8_mul_t(&c->ka, v8_of(r[3], r[4], r[5]));
-    c->ma = r[6], c->ta = r[7];
-    tl_f8_load_rows(velocities, g->b, r);
-    v8 wb = k8_mul_t(&c->kb, v8_of(r[3], r[4], r[5]));
-    c->mb = r[6], c->tb = r[7];
-    tl_f8 h = tl_f8_set1(step->sub);
-    c->curve = v8_scale(v8_sub(bend(wb, rb, h), bend(wa, ra, h)), tl_f8_mul(tl_f8_set1(0.5f), h));
+    if (c->sides & TL_JOINT_A) {
+        tl_f8_load_rows(poses, g->a, r);
+        c->qa = q8_of(r[3], r[4], r[5], r[6]);
+        c->xa = v8_of(r[0], r[1], r[2]);
+        v8 arm = q8_rotate(c->qa, c->pa);
+        c->pa = v8_add(c->xa, arm);
+        tl_f8_load_rows(velocities, g->a, r);
+        bend_a = bend(k8_mul_t(&c->ka, v8_of(r[3], r[4], r[5])), arm, h);
+        c->ma = r[6], c->ta = r[7];
+    }
+    if (c->sides & TL_JOINT_B) {
+        tl_f8_load_rows(poses, g->b, r);
+        c->qb = q8_of(r[3], r[4], r[5], r[6]);
+        c->xb = v8_of(r[0], r[1], r[2]);
+        v8 arm = q8_rotate(c->qb, c->pb);
+        c->pb = v8_add(c->xb, arm);
+        tl_f8_load_rows(velocities, g->b, r);
+        bend_b = bend(k8_mul_t(&c->kb, v8_of(r[3], r[4], r[5])), arm, h);
+        c->mb = r[6], c->tb = r[7];
+    }
+    c->curve = v8_scale(v8_sub(bend_b, bend_a), tl_f8_mul(tl_f8_set1(0.5f), h));
 }
 
 static inline int is_linear_row(uint32_t code) {
@@ -140,8 +221,12 @@ TL_INLINE void make_point_rows(const joint_bodies *c, tl_joint_row *rows) {
         for (uint32_t m = 0; m < 3u; m++) {
             tl_f8_store(rows[k].n[m], tl_f8_set1(k == m ? 1.0f : 0.0f));
         }
-        v8_store(rows[k].ja[0], k8_arm(&c->ka, ra, k));
-        v8_store(rows[k].jb[0], k8_arm(&c->kb, rb, k));
+        if (c->sides & TL_JOINT_A) {
+            v8_store(rows[k].ja[0], k8_arm(&c->ka, ra, k));
+        }
+        if (c->sides & TL_JOINT_B) {
+            v8_store(rows[k].jb[0], k8_arm(&c->kb, rb, k));
+        }
         tl_f8_store(rows[k].error, errors[k]);
         tl_f8_store(rows[k].curve, curves[k]);
     }
@@ -149,7 +234,7 @@ TL_INLINE void make_point_rows(const joint_bodies *c, tl_joint_row *rows) {
 
 static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t code, uint32_t free_axis) {
     uint32_t type = code % TL_ROW_TYPES;
-    v8 d = v8_sub(c->pb, c->pa), n, ja, jb;
+    v8 d = v8_sub(c->pb, c->pa), n, ja = v8_zero(), jb = v8_zero();
     tl_f8 error, mass = tl_f8_zero(), curve = tl_f8_zero();
     if (is_linear_row(code)) {
         if (type == TL_ROW_DISTANCE) {
@@ -160,14 +245,14 @@ static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t co
             n = c->a[type - TL_ROW_LINEAR];
             error = v8_dot(n, d);
         }
-        ja = k8_mul(&c->ka, v8_cross(v8_sub(c->pb, c->xa), n));
-        jb = k8_mul(&c->kb, v8_cross(v8_sub(c->pb, c->xb), n));
+        ja = c->sides & TL_JOINT_A ? k8_mul(&c->ka, v8_cross(v8_sub(c->pb, c->xa), n)) : ja;
+        jb = c->sides & TL_JOINT_B ? k8_mul(&c->kb, v8_cross(v8_sub(c->pb, c->xb), n)) : jb;
         mass = tl_f8_add(c->ma, c->mb);
         curve = v8_dot(n, c->curve);
     } else {
         angular_row(c, type, free_axis, &n, &error);
-        ja = k8_mul(&c->ka, n);
-        jb = k8_mul(&c->kb, n);
+        ja = c->sides & TL_JOINT_A ? k8_mul(&c->ka, n) : ja;
+        jb = c->sides & TL_JOINT_B ? k8_mul(&c->kb, n) : jb;
     }
     v8_store(row->n[0], n);
     v8_store(row->ja[0], ja);
@@ -188,11 +273,24 @@ static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t co
 /* The first i + 1 entries of row i of a joint's matrix. */
 TL_INLINE void matrix_row(const joint_bodies *c, const tl_joint_group *g, const tl_joint_row *rows, uint32_t i,
                           tl_f8 *out) {
-    v8 ja = v8_scale(v8_load(rows[i].ja[0]), c->ta), jb = v8_scale(v8_load(rows[i].jb[0]), c->tb);
     tl_f8 linear = tl_f8_add(c->ma, c->mb);
     int is_linear = is_linear_row(g->code[i]), is_point = (g->needs & TL_JOINT_POINT) && i < 3u;
     for (uint32_t j = 0; j <= i; j++) {
-        out[j] = tl_f8_add(v8_dot(ja, v8_load(rows[j].ja[0])), v8_dot(jb, v8_load(rows[j].jb[0])));
+        out[j] = tl_f8_zero();
+    }
+    if (c->sides & TL_JOINT_A) {
+        v8 ja = v8_scale(v8_load(rows[i].ja[0]), c->ta);
+        for (uint32_t j = 0; j <= i; j++) {
+            out[j] = v8_dot(ja, v8_load(rows[j].ja[0]));
+        }
+    }
+    if (c->sides & TL_JOINT_B) {
+        v8 jb = v8_scale(v8_load(rows[i].jb[0]), c->tb);
+        for (uint32_t j = 0; j <= i; j++) {
+            out[j] = tl_f8_add(out[j], v8_dot(jb, v8_load(rows[j].jb[0])));
+        }
+    }
+    for (uint32_t j = 0; j <= i; j++) {
         if (is_point) {
             out[j] = i == j ? tl_f8_add(out[j], linear) : out[j];
         } else if (is_linear && is_linear_row(g->code[j])) {
@@ -201,8 +299,8 @@ TL_INLINE void matrix_row(const joint_bodies *c, const tl_joint_group *g, const 
     }
 }
 
-static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
-    for (uint32_t i = 0; i < g->linked; i++) {
+TL_INLINE void fill_matrix_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t n) {
+    for (uint32_t i = 0; i < n; i++) {
         tl_f8 row[6];
         matrix_row(c, g, rows, i, row);
         for (uint32_t j = 0; j <= i; j++) {
@@ -211,29 +309,38 @@ static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint
     }
 }
 
+/* The usual numbers are compiled on their own. */
+static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
+    switch (g->linked) {
+    case 3:
+        fill_matrix_of(c, g, rows, 3u);
+        break;
+    case 5:
+        fill_matrix_of(c, g, rows, 5u);
+        break;
+    default:
+        fill_matrix_of(c, g, rows, g->linked);
+    }
+}
+
 /* L D L^T of the equalities' matrix, row by row; the diagonal holds 1 / D (Golub and Van Loan, 4.1.2). */
 TL_INLINE void factor_equalities_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t n) {
     tl_f8 l[21], d[6];
     for (uint32_t i = 0; i < n; i++) {
-        tl_f8 row[6];
+        tl_f8 row[6]; /* of the matrix, then of L D */
         matrix_row(c, g, rows, i, row);
-        for (uint32_t j = 0; j <= i; j++) {
-            tl_f8 k = row[j], whole = k;
-            for (uint32_t m = 0; m < j; m++) { /* l[i][m] holds L D until the row is done */
-                tl_f8 other = j == i ? tl_f8_mul(l[i * (i + 1u) / 2u + m], d[m]) : l[j * (j + 1u) / 2u + m];
-                k = tl_f8_sub(k, tl_f8_mul(l[i * (i + 1u) / 2u + m], other));
-            }
-            if (j < i) {
-                l[i * (i + 1u) / 2u + j] = k;
-            } else {
-                tl_m8 ok = tl_f8_gt(k, tl_f8_mul(whole, tl_f8_set1(LEAST_PIVOT)));
-                d[i] = tl_f8_and_mask(ok, inverse_or_zero(k));
-                for (uint32_t m = 0; m < i; m++) {
-                    l[i * (i + 1u) / 2u + m] = tl_f8_mul(l[i * (i + 1u) / 2u + m], d[m]);
-                }
-                l[i * (i + 1u) / 2u + i] = d[i];
+        for (uint32_t j = 0; j < i; j++) {
+            for (uint32_t m = 0; m < j; m++) {
+                row[j] = tl_f8_sub(row[j], tl_f8_mul(row[m], l[j * (j + 1u) / 2u + m]));
             }
         }
+        tl_f8 k = row[i];
+        for (uint32_t j = 0; j < i; j++) {
+            l[i * (i + 1u) / 2u + j] = tl_f8_mul(row[j], d[j]);
+            k = tl_f8_sub(k, tl_f8_mul(row[j], l[i * (i + 1u) / 2u + j]));
+        }
+        tl_m8 ok = tl_f8_gt(k, tl_f8_mul(row[i], tl_f8_set1(LEAST_PIVOT)));
+        l[i * (i + 1u) / 2u + i] = d[i] = tl_f8_and_mask(ok, inverse_or_zero(k));
     }
     for (uint32_t i = 0; i < n * (n + 1u) / 2u; i++) {
         tl_f8_store(g->matrix[i], l[i]);
@@ -284,11 +391,8 @@ static inline v8 v8_finite_or_zero(v8 a) {
 
 /* The impulses of rows that hold a point, from the world's axes to frame a's. */
 static inline void impulses_to_frame(const tl_step *step, const tl_joint_group *g, tl_f8 impulse[3]) {
-    tl_f8 r[8];
-    tl_f8_load_rows(tl_row_pose(step->h)->f, g->a, r);
-    q8 own = q8_of(tl_f8_load(g->qa[0]), tl_f8_load(g->qa[1]), tl_f8_load(g->qa[2]), tl_f8_load(g->qa[3]));
-    q8 frame = q8_mul(q8_of(r[3], r[4], r[5], r[6]), own);
-    v8 back = v8_finite_or_zero(q8_rotate_back(frame, v8_of(impulse[0], impulse[1], impulse[2])));
+    v8 along = v8_of(impulse[0], impulse[1], impulse[2]);
+    v8 back = v8_finite_or_zero(q8_rotate_back(frame_of(step, g), along));
     impulse[0] = back.x, impulse[1] = back.y, impulse[2] = back.z;
 }
 

@@ -449,7 +449,7 @@ static void set_far(const tl_header *h, const tl_linkage *l, uint32_t far) {
 int tl_stage_far_linkages(tl_header *h) {
     uint32_t any = 0, shared = 0;
     for (uint32_t i = 0; i < h->joint_groups && h->linkages; i++) {
-        any |= tl_joint_group_pool(h)[i].linked ? tl_joint_group_pool(h)[i].far : 0u;
+        any |= tl_joint_group_pool(h)[i].linked ? tl_joint_group_pool(h)[i].far & ~(uint32_t)TL_FAR_NOT : 0u;
     }
     if (!any) {
         return 0;
@@ -467,4 +467,31 @@ int tl_stage_far_linkages(tl_header *h) {
         set_far(h, l, l->far ? (uint32_t)TL_FAR_AGAIN : 0u);
     }
     return any != 0;
+}
+
+/* --- what is near ------------------------------------------------------------------------------- */
+
+/* TL_FAR_NOT if all joints of a linkage are near, else 0. */
+static uint32_t near_of(const tl_header *h, const tl_linkage *l) {
+    uint32_t near = l->exact ? (uint32_t)TL_FAR_NOT : 0u;
+    for (uint32_t k = 0; k < l->nodes && near; k++) {
+        near = tl_joint_group_pool(h)[tl_linkage_places(h)[l->first_place + k] / TL_LANES].far & TL_FAR_NOT;
+    }
+    return near;
+}
+
+void tl_stage_near_linkages(tl_header *h) {
+    uint32_t shared = TL_FAR_NOT;
+    for (uint32_t i = 0; i < h->linkages; i++) {
+        tl_linkage *l = &tl_linkages(h)[i];
+        l->near = near_of(h, l);
+        shared &= l->wide ? shared : l->near;
+    }
+    for (uint32_t i = 0; i < h->linkages; i++) {
+        tl_linkage *l = &tl_linkages(h)[i];
+        l->near = l->wide ? l->near : shared;
+        for (uint32_t k = 0; k < l->nodes && !l->near; k++) {
+            tl_joint_group_pool(h)[tl_linkage_places(h)[l->first_place + k] / TL_LANES].far &= ~(uint32_t)TL_FAR_NOT;
+        }
+    }
 }

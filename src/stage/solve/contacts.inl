@@ -14,6 +14,7 @@
 typedef struct pair_velocity {
     v8 va, ua, vb, ub;
     tl_f8 ma, ta, mb, tb;
+    uint32_t sides; /* of joints: TL_JOINT_A and TL_JOINT_B */
 } pair_velocity;
 
 TL_INLINE void load_pair(const float *velocities, const uint32_t *a, const uint32_t *b, pair_velocity *p) {

@@ -21,6 +21,11 @@ static inline void lane_up(const float *from, float *to) {
     memcpy(to + 1, from, (TL_LANES - 1u) * sizeof *to);
 }
 
+static inline void lane_down(const float *from, float *to) {
+    memcpy(to, from + 1, (TL_LANES - 1u) * sizeof *to);
+    to[TL_LANES - 1u] = 0.0f;
+}
+
 static void find_cuts_before(link_lane behind, uint32_t live, cuts_before *c) {
     memcpy(c->g.code, behind.g->code, sizeof c->g.code);
     lane_up(behind.g->mass[1], c->g.mass[1]);
@@ -40,15 +45,21 @@ static void gather_cuts(const tl_header *h, const tl_linkage *l, const float *v,
     const tl_block_node *cut = before + 1;
     const tl_block *block = tl_linkage_blocks(h);
     uint32_t rows = behind->rows;
-    const float *across = v + block[behind->first].values * TL_LANES;
-    for (uint32_t j = 0; j < l->cuts; j++) {
-        for (uint32_t e = 0; e < rows * (rows + 1u) / 2u; e++) {
-            float next = j + 1u < TL_LANES ? v[(before->diagonal + e) * TL_LANES + j + 1u] : 0.0f;
-            rest[cut[j].diagonal + e] = v[(behind->diagonal + e) * TL_LANES + j] + next;
+    for (uint32_t e = 0; e < rows * (rows + 1u) / 2u; e++) {
+        const float *mine = v + (behind->diagonal + e) * TL_LANES;
+        float next[TL_LANES];
+        lane_down(v + (before->diagonal + e) * TL_LANES, next);
+        for (uint32_t j = 0; j < l->cuts; j++) {
+            rest[cut[j].diagonal + e] = mine[j] + next[j];
         }
-        float *to = j > 0 ? rest + block[cut[j - 1u].first].values : NULL;
-        for (uint32_t e = 0; e < rows * rows && to; e++) {
-            to[e % rows * rows + e / rows] = across[e * TL_LANES + j];
+    }
+    const float *across = v + block[behind->first].values * TL_LANES;
+    for (uint32_t j = 1; j < l->cuts; j++) {
+        float *to = rest + block[cut[j - 1u].first].values;
+        for (uint32_t r = 0; r < rows; r++) {
+            for (uint32_t c = 0; c < rows; c++) {
+                to[c * rows + r] = across[(r * rows + c) * TL_LANES + j];
+            }
         }
     }
 }
@@ -106,15 +117,18 @@ static void cut_solve(const tl_header *h, const tl_linkage *l) {
     memset(before, 0, live[inner] * TL_WIDTH * sizeof *v);
     ldlt_forward_pass(node, tl_linkage_blocks(h), live, inner, v);
     for (uint32_t i = 0; i < live[inner]; i++, behind += TL_WIDTH, before += TL_WIDTH) {
+        float next[TL_LANES];
+        lane_down(before, next);
         for (uint32_t j = 0; j < l->cuts; j++) {
-            rest[cut[j].x + i] = behind[j] + (j + 1u < TL_LANES ? before[j + 1u] : 0.0f);
+            rest[cut[j].x + i] = behind[j] + next[j];
         }
     }
     tl_cuts_solve(h, l);
     behind = v + node[inner].x * TL_WIDTH, before = v + node[inner + 1u].x * TL_WIDTH;
     for (uint32_t i = 0; i < live[inner]; i++, behind += TL_WIDTH, before += TL_WIDTH) {
-        for (uint32_t j = 0; j < TL_LANES; j++) {
-            behind[j] = j < l->cuts ? rest[cut[j].x + i] : 0.0f;
+        memset(behind, 0, TL_LANES * sizeof *behind);
+        for (uint32_t j = 0; j < l->cuts; j++) {
+            behind[j] = rest[cut[j].x + i];
         }
         lane_up(behind, before);
     }

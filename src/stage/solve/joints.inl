@@ -4,6 +4,10 @@
  * "Nonconvex rigid bodies with stacking", SIGGRAPH 2003), so that a chain gains no energy from what its passes leave
  * unsolved. */
 
+/* Errors of what is exact grow by themselves alone. Up to these (m, rad) they are left to the step's last sub-step. */
+#define NEAR_AWAY 5e-6f
+#define NEAR_TURNED 5e-5f
+
 /* The share of an error that a sub-step takes back. */
 #define JOINT_SHARE 0.5f
 
@@ -17,13 +21,45 @@ static inline int row_kind(const tl_joint_group *g, uint32_t k) {
     return is_linear_row(g->code[k]) ? ROW_LINEAR : ROW_ANGULAR;
 }
 
-TL_INLINE tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int kind) {
-    v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
-    if (kind == ROW_LINEAR) {
-        return row_speed(p, v8_load(row->n[0]), ja, jb);
+/* As load_pair and store_pair, but for a side on which nothing moves. */
+TL_INLINE void load_joint_pair(const float *velocities, const tl_joint_group *g, pair_velocity *p) {
+    tl_f8 r[8];
+    p->sides = g->needs;
+    p->va = p->ua = p->vb = p->ub = v8_zero();
+    p->ma = p->ta = p->mb = p->tb = tl_f8_zero();
+    if (p->sides & TL_JOINT_A) {
+        tl_f8_load_rows(velocities, g->a, r);
+        p->va = v8_of(r[0], r[1], r[2]), p->ua = v8_of(r[3], r[4], r[5]), p->ma = r[6], p->ta = r[7];
     }
-    tl_f8 spin = spin_speed(p, ja, jb);
+    if (p->sides & TL_JOINT_B) {
+        tl_f8_load_rows(velocities, g->b, r);
+        p->vb = v8_of(r[0], r[1], r[2]), p->ub = v8_of(r[3], r[4], r[5]), p->mb = r[6], p->tb = r[7];
+    }
+}
+
+TL_INLINE void store_joint_pair(float *velocities, const tl_joint_group *g, const pair_velocity *p) {
+    if (p->sides & TL_JOINT_A) {
+        const tl_f8 ra[8] = {p->va.x, p->va.y, p->va.z, p->ua.x, p->ua.y, p->ua.z, p->ma, p->ta};
+        tl_f8_store_rows(velocities, g->a, ra);
+    }
+    if (p->sides & TL_JOINT_B) {
+        const tl_f8 rb[8] = {p->vb.x, p->vb.y, p->vb.z, p->ub.x, p->ub.y, p->ub.z, p->mb, p->tb};
+        tl_f8_store_rows(velocities, g->b, rb);
+    }
+}
+
+TL_INLINE tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int kind) {
+    tl_f8 a = tl_f8_zero(), b = tl_f8_zero();
+    if (p->sides & TL_JOINT_A) {
+        a = v8_dot(v8_load(row->ja[0]), p->ua);
+    }
+    if (p->sides & TL_JOINT_B) {
+        b = v8_dot(v8_load(row->jb[0]), p->ub);
+    }
+    tl_f8 spin = tl_f8_sub(b, a);
     switch (kind) {
+    case ROW_LINEAR:
+        return tl_f8_add(v8_dot(v8_load(row->n[0]), v8_sub(p->vb, p->va)), spin);
     case ROW_AXIS:
         return tl_f8_add(spin, tl_f8_sub(p->vb.x, p->va.x));
     case ROW_AXIS + 1:
@@ -35,27 +71,32 @@ TL_INLINE tl_f8 joint_speed(const pair_velocity *p, const tl_joint_row *row, int
     }
 }
 
-TL_INLINE void joint_apply(pair_velocity *p, const tl_joint_row *row, int kind, tl_f8 impulse) {
-    v8 ja = v8_load(row->ja[0]), jb = v8_load(row->jb[0]);
-    tl_f8 a = tl_f8_mul(impulse, p->ma), b = tl_f8_mul(impulse, p->mb);
+/* v + s n, n being what a row of this kind is along. */
+TL_INLINE v8 along_row(v8 v, tl_f8 s, const tl_joint_row *row, int kind) {
     switch (kind) {
     case ROW_LINEAR:
-        p->va = v8_msub(p->va, a, v8_load(row->n[0]));
-        p->vb = v8_mad(p->vb, b, v8_load(row->n[0]));
-        break;
+        return v8_mad(v, s, v8_load(row->n[0]));
     case ROW_AXIS:
-        p->va.x = tl_f8_sub(p->va.x, a), p->vb.x = tl_f8_add(p->vb.x, b);
-        break;
+        return v8_of(tl_f8_add(v.x, s), v.y, v.z);
     case ROW_AXIS + 1:
-        p->va.y = tl_f8_sub(p->va.y, a), p->vb.y = tl_f8_add(p->vb.y, b);
-        break;
+        return v8_of(v.x, tl_f8_add(v.y, s), v.z);
     case ROW_AXIS + 2:
-        p->va.z = tl_f8_sub(p->va.z, a), p->vb.z = tl_f8_add(p->vb.z, b);
-        break;
+        return v8_of(v.x, v.y, tl_f8_add(v.z, s));
     default:
-        break;
+        return v;
     }
-    apply_spin(p, ja, jb, impulse);
+}
+
+TL_INLINE void joint_apply(pair_velocity *p, const tl_joint_row *row, int kind, tl_f8 impulse) {
+    if (p->sides & TL_JOINT_A) {
+        tl_f8 back = tl_f8_neg(impulse);
+        p->va = along_row(p->va, tl_f8_mul(back, p->ma), row, kind);
+        p->ua = v8_mad(p->ua, tl_f8_mul(back, p->ta), v8_load(row->ja[0]));
+    }
+    if (p->sides & TL_JOINT_B) {
+        p->vb = along_row(p->vb, tl_f8_mul(impulse, p->mb), row, kind);
+        p->ub = v8_mad(p->ub, tl_f8_mul(impulse, p->tb), v8_load(row->jb[0]));
+    }
 }
 
 /* An implicit spring and damper, bounded in force: softness g = 1 / (h (c + h k)), speed it seeks (k e + c v) / (c + h
@@ -189,6 +230,16 @@ static void push_equalities(const tl_joint_group *g, const tl_joint_row *rows, p
     }
 }
 
+/* Whether the errors of an exact group, whose bodies nothing else displaces, may wait. */
+static int is_near(const tl_joint_group *g, const tl_joint_row *rows) {
+    tl_m8 away = tl_m8_zero();
+    for (uint32_t k = 0; k < g->fixed; k++) {
+        tl_f8 error = tl_f8_abs(tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower)));
+        away = tl_m8_or(away, tl_f8_gt(error, tl_f8_set1(is_linear_row(g->code[k]) ? NEAR_AWAY : NEAR_TURNED)));
+    }
+    return !tl_m8_any(away);
+}
+
 /* Displacements that take back a share of the errors and of what is beyond hard limits. */
 static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
     float *pushes = tl_row_push(step->h)->f;
@@ -197,10 +248,10 @@ static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
         const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        if (g->linked && g->rows == g->fixed) {
+        if (g->linked ? g->rows == g->fixed : step->waits && g->exact && is_near(g, rows)) {
             continue;
         }
-        load_pair(pushes, g->a, g->b, &p);
+        load_joint_pair(pushes, g, &p);
         for (uint32_t k = g->rows; k-- > g->fixed;) {
             if (g->code[k] / TL_ROW_TYPES != TL_ROW_RANGE) {
                 continue;
@@ -213,11 +264,11 @@ static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
             joint_apply(&p, &rows[k], linear, tl_f8_mul(sign, tl_f8_select(soft, zero, push)));
         }
         if (g->linked) {
-            store_pair(pushes, g->a, g->b, &p);
+            store_joint_pair(pushes, g, &p);
             continue;
         }
         push_equalities(g, rows, &p);
-        store_pair(pushes, g->a, g->b, &p);
+        store_joint_pair(pushes, g, &p);
     }
 }
 
@@ -229,7 +280,7 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
         if ((g->linked && g->rows == g->fixed) || is_exact(step, g)) {
             continue;
         }
-        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        load_joint_pair(tl_row_velocity(step->h)->f, g, &p);
         for (uint32_t k = g->rows; k-- > g->fixed;) {
             int linear = is_linear_row(g->code[k]);
             if (g->code[k] / TL_ROW_TYPES == TL_ROW_DRIVE) {
@@ -241,7 +292,7 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
         if (!g->linked) {
             solve_equalities(step, g, rows, &p, before_move);
         }
-        store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        store_joint_pair(tl_row_velocity(step->h)->f, g, &p);
     }
 }
 
@@ -263,11 +314,10 @@ static void begin_joints(const tl_step *step, uint32_t first, uint32_t last) {
         tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
         pair_velocity p;
-        keep_frames(step, g);
         make_joint_rows(step, g);
-        load_pair(velocities, g->a, g->b, &p);
+        load_joint_pair(velocities, g, &p);
         apply_all(g, rows, &p, 1.0f, ROW_AXIS + 3);
-        store_pair(velocities, g->a, g->b, &p);
+        store_joint_pair(velocities, g, &p);
     }
 }
 
@@ -283,12 +333,12 @@ static void turn_joints(const tl_step *step, uint32_t first, uint32_t last) {
         if (step->again && !(g->far & TL_FAR_AGAIN)) {
             continue;
         }
-        load_pair(befores, g->a, g->b, &p);
+        load_joint_pair(befores, g, &p);
         p.ta = tl_f8_load(g->turns[0]), p.tb = tl_f8_load(g->turns[1]);
         apply_all(g, rows, &p, 1.0f, ROW_AXIS);
         make_joint_rows(step, g);
         p.ta = tl_f8_load(g->turns[0]), p.tb = tl_f8_load(g->turns[1]);
         apply_all(g, rows, &p, -1.0f, ROW_AXIS);
-        store_pair(befores, g->a, g->b, &p);
+        store_joint_pair(befores, g, &p);
     }
 }

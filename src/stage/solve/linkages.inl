@@ -1,4 +1,6 @@
 /* Linkages solved at once, for the width that the including file has chosen: one linkage, or eight alike. */
+#include <string.h>
+
 #include "dynamics/block_ldlt.inl"
 
 /* A node's joint: its group from the lane on. */
@@ -83,9 +85,7 @@ static inline uint32_t live_rows(link_lane k) {
 
 /* What the joint of a row has to do with that of a column. */
 static void link_block(const tl_block *b, link_lane row, link_lane column, uint32_t rows, uint32_t columns, float *v) {
-    for (uint32_t i = 0; i < rows * column.g->linked; i++) {
-        wf_store(v + i * TL_WIDTH, wf_set1(0.0f));
-    }
+    memset(v, 0, rows * column.g->linked * TL_WIDTH * sizeof *v);
     for (uint32_t i = 0; i < 4u; i++) {
         if (b->shares >> i & 1u) {
             link_share(row, column, rows, columns, i / 2u, i % 2u, v);

@@ -3,6 +3,12 @@
 
 #include "stage/solve/cuts.inl"
 
+/* Linked joints have both sides. */
+TL_INLINE void load_linked_pair(const float *velocities, const tl_joint_group *g, pair_velocity *p) {
+    load_pair(velocities, g->a, g->b, p);
+    p->sides = TL_JOINT_A | TL_JOINT_B;
+}
+
 static inline tl_m8 is_hard(const tl_joint_row *row) {
     return tl_f8_eq(tl_f8_add(tl_f8_load(row->stiffness), tl_f8_load(row->damping)), tl_f8_zero());
 }
@@ -63,7 +69,7 @@ static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) 
             continue;
         }
         pair_velocity p;
-        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        load_linked_pair(tl_row_velocity(step->h)->f, g, &p);
         for (uint32_t k = 0; k < g->fixed; k++) {
             tl_f8 speed = speed_to_meet(g, rows, k, &p);
             speed = step->before_move ? speed_before_move(step, g, rows, k, speed) : speed;
@@ -100,7 +106,7 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
             continue;
         }
         pair_velocity p;
-        load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
+        load_linked_pair(tl_row_push(step->h)->f, g, &p);
         tl_m8 far = tl_m8_zero();
         for (uint32_t k = 0; k < g->fixed; k++) {
             tl_f8 error = error_to_meet(step, g, rows, k);
@@ -110,18 +116,11 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
             far = tl_m8_or(far, tl_f8_gt(tl_f8_abs(error), most));
         }
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(far) ? (uint32_t)TL_FAR_NOW : 0u);
+        g->far |= step->waits && g->exact && is_near(g, rows) ? (uint32_t)TL_FAR_NOT : 0u;
         for (uint32_t k = g->fixed; k < g->linked; k++) {
             far = tl_m8_or(far, push_range(g, rows, k, &p));
         }
     }
-}
-
-/* Whether a joint of the group pulls hard enough to be looked at. */
-static void note_pull(const tl_step *step, tl_joint_group *g, v8 impulse) {
-    tl_f8 pull = tl_f8_sqrt(v8_dot(impulse, impulse));
-    tl_f8 give = tl_f8_max(tl_f8_load(g->give[0]), tl_f8_load(g->give[1]));
-    tl_f8_store(g->pull, pull);
-    g->stiff = (uint32_t)tl_m8_any(tl_f8_gt(tl_f8_mul(pull, give), tl_f8_set1(TL_STIFF_PULL * step->inverse_sub)));
 }
 
 /* Impulses to the bodies. A range that would have to pull is let go, and its linkage noted for another round. */
@@ -133,7 +132,7 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
             continue;
         }
         pair_velocity p;
-        load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+        load_linked_pair(tl_row_velocity(step->h)->f, g, &p);
         v8 pull = v8_zero();
         tl_m8 pulls = tl_m8_zero();
         for (uint32_t k = 0; k < g->linked; k++) {
@@ -152,7 +151,7 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
             pull = linear ? v8_mad(pull, now, v8_load(rows[k].n[0])) : pull;
         }
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(pulls) ? (uint32_t)TL_FAR_NOW : 0u);
-        note_pull(step, g, pull);
+        note_pull(step, g, tl_f8_sqrt(v8_dot(pull, pull)));
         store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
     }
 }
@@ -161,11 +160,11 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
-        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN))) {
+        if (!g->linked || (step->again && !(g->far & TL_FAR_AGAIN)) || (step->waits && g->far & TL_FAR_NOT)) {
             continue;
         }
         pair_velocity p;
-        load_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
+        load_linked_pair(tl_row_push(step->h)->f, g, &p);
         for (uint32_t k = 0; k < g->linked; k++) {
             joint_apply(&p, &rows[k], row_kind(g, k), tl_f8_load(g->x[k]));
         }
@@ -176,7 +175,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
 static void solve_linkages(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
         const tl_linkage *l = &tl_linkages(step->h)[i];
-        if ((step->again && !l->far) || (step->skip_exact && l->exact)) {
+        if ((step->again && !l->far) || (step->skip_exact && l->exact) || (step->waits && l->near)) {
             continue;
         }
         if (l->cuts) {

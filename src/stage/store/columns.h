@@ -42,6 +42,7 @@
     X(shape_pose, talus_pose, SHAPE, COMMANDS, STATE, 4)                                                               \
     X(shape_user, uint64_t, SHAPE, COMMANDS, STATE, 8)                                                                 \
     X(shape_tracks, tl_shape_track, SHAPE, REFIT, INDEX, 4)                                                            \
+    X(shape_bounds, talus_aabb, SHAPE, REFIT, INDEX, 4)                                                                \
     X(nodes, tl_tree_node, NODE, REFIT, INDEX, 4)                                                                      \
     X(moved_shape, uint32_t, SHAPE, REFIT, INDEX, 4)                                                                   \
     /* pairs */                                                                                                        \

@@ -99,11 +99,14 @@ typedef struct tl_joint_row {
 enum {
     TL_JOINT_POINT = 1, /* the first three rows hold a point and are along the world's axes; their impulses are kept
                          * along frame a, as others are */
-    TL_JOINT_AXES = 2   /* others are along frame a or tell how it stands to frame b */
+    TL_JOINT_AXES = 2,  /* others are along frame a or tell how it stands to frame b */
+    TL_JOINT_A = 4,     /* some body a has a row, */
+    TL_JOINT_B = 8      /* some body b; a side on which none has is left out, unless the group is linked */
 };
 
-/* joint_group.far: an error is so large that taking it back leaves one; the group is pushed again. */
-enum { TL_FAR_NOW = 1, TL_FAR_AGAIN = 2 };
+/* joint_group.far: an error is so large that taking it back leaves one; the group is pushed again; errors are so small
+ * that they wait. */
+enum { TL_FAR_NOW = 1, TL_FAR_AGAIN = 2, TL_FAR_NOT = 4 };
 
 typedef struct tl_joint_group {
     uint32_t a[TL_LANES], b[TL_LANES], joint[TL_LANES];
@@ -149,6 +152,7 @@ typedef struct tl_linkage {
     uint32_t values;             /* in linkage_values */
     uint32_t lanes, wide;        /* sets in it; 1 if it is solved eight wide */
     uint32_t far;                /* 1 if it is to be pushed again */
+    uint32_t near;               /* 1 if its errors wait */
     uint32_t exact;              /* 1 if nothing but equalities holds its bodies */
     /* Of one that is cut into pieces: joints of a piece, cuts (0: it is not cut), groups from, nodes of a piece and
      * then of the cuts, values of the cuts behind those of the pieces */
