@@ -172,49 +172,56 @@ static void get_friction(const unsigned char *p, float *friction, uint32_t signs
 static const uint32_t FIRST_WORDS[5][4] = {
     {0, 0, 0, 0}, {~0u, 0, 0, 0}, {~0u, ~0u, 0, 0}, {~0u, ~0u, ~0u, 0}, {~0u, ~0u, ~0u, ~0u}};
 
-/* A contact's bytes from p on, MOST of which can be read. Returns where they end, or null if they are no contact. */
-static const unsigned char *get_contact(const unsigned char *p, const slots *s, tl_header *h, uint32_t contact,
-                                        tl_changes *changes) {
-    uint32_t code = tl_get_word(p), shape_a = tl_get_word(p + 4), shape_b = shape_a >> 16;
-    uint32_t count = code & 7u, color = code >> AT_COLOR & 127u, flags = code >> AT_FLAGS & 255u;
-    uint32_t rubs = code >> AT_RUBS & 1u, cached = code >> AT_CACHE & 7u, wide = code >> AT_WIDE & 1u;
-    uint32_t lifted = code >> AT_LIFT & 1u;
-    if (count > POINTS || cached > 4u || !(flags & TL_CONTACT_ALIVE) || color > TL_COLORS) {
-        return NULL;
-    }
-    if (s->few_shapes) {
-        shape_a &= 0xffffu;
-        p += 8;
-    } else {
-        shape_b = tl_get_word(p + 8);
-        p += 12;
-    }
-    const unsigned char *rest = p + 16u + 16u * rubs, *cache = rest + 4u * lifted, *points = cache + 4u * cached;
-    const unsigned char *end = points + (31u + wide) * count; /* early: the next contact waits for it */
-    tl_contact_meta *m = &s->metas[contact];
-    if ((m->shape_a ^ shape_a) | (m->shape_b ^ shape_b) | (m->color ^ color) |
-        ((m->flags ^ flags) & (TL_CONTACT_ALIVE | TL_CONTACT_COLORED))) {
+/* Puts down which contact it is; what stood in its slot goes if that was another. */
+static void get_meta(tl_contact_meta *m, const tl_contact_meta *is, tl_header *h, uint32_t contact,
+                     tl_changes *changes) {
+    if ((m->shape_a ^ is->shape_a) | (m->shape_b ^ is->shape_b) | (m->color ^ is->color) |
+        ((m->flags ^ is->flags) & (TL_CONTACT_ALIVE | TL_CONTACT_COLORED))) {
         tl_reindex_part_contact(h, contact);
         tl_contact_order(h)[changes->contacts++] = contact;
     }
-    m->motion = tl_get_word(p);
+    m->flags = is->flags, m->count = is->count, m->shape_a = is->shape_a, m->shape_b = is->shape_b;
+    m->motion = is->motion, m->color = is->color;
+}
+
+/* A contact's bytes from p on, MOST of which can be read. Returns where they end, or null if they are no contact. */
+static const unsigned char *get_contact(const unsigned char *p, const slots *s, tl_header *h, uint32_t contact,
+                                        tl_changes *changes) {
+    uint32_t code = tl_get_word(p), count = code & 7u, cached = code >> AT_CACHE & 7u;
+    tl_contact_meta is;
+    is.flags = code >> AT_FLAGS & 255u, is.count = count, is.color = code >> AT_COLOR & 127u;
+    if (count > POINTS || cached > 4u || !(is.flags & TL_CONTACT_ALIVE) || is.color > TL_COLORS) {
+        return NULL;
+    }
+    is.shape_a = tl_get_word(p + 4), is.shape_b = is.shape_a >> 16;
+    if (s->few_shapes) {
+        is.shape_a &= 0xffffu;
+        p += 8;
+    } else {
+        is.shape_b = tl_get_word(p + 8);
+        p += 12;
+    }
+    is.motion = tl_get_word(p);
+    get_meta(&s->metas[contact], &is, h, contact, changes);
+    uint32_t rubs = code >> AT_RUBS & 1u, lifted = code >> AT_LIFT & 1u, words[4];
     tl_get_words(p + 4, s->heads[contact].normal, 3);
     get_friction(p + 16, s->heads[contact].friction, code >> AT_SIGNS & 15u, rubs);
-    uint32_t words[4], lift = tl_get_word(rest) & (0u - lifted);
+    p += 16u + 16u * rubs;
+    uint32_t lift = tl_get_word(p) & (0u - lifted);
     memcpy(&s->heads[contact].lift, &lift, 4);
-    tl_get_words(cache, words, 4);
+    p += 4u * lifted;
+    tl_get_words(p, words, 4);
     for (uint32_t i = 0; i < 4u; i++) {
         words[i] &= FIRST_WORDS[cached][i];
     }
     memcpy(s->caches[contact].word, words, 16);
-    if (wide) { /* seldom */
-        get_points(points, s->points[contact].p, count, 32, ALL);
-    } else {
-        get_points(points, s->points[contact].p, count, 31, ALL >> 8);
+    p += 4u * cached;
+    if (code >> AT_WIDE & 1u) { /* seldom */
+        get_points(p, s->points[contact].p, count, 32, ALL);
+        return p + 32u * count;
     }
-    m->count = count, m->color = color, m->flags = flags;
-    m->shape_a = shape_a, m->shape_b = shape_b;
-    return end;
+    get_points(p, s->points[contact].p, count, 31, ALL >> 8);
+    return p + 31u * count;
 }
 
 /* The same where the bytes may end before the contact does: null then. */
