@@ -70,7 +70,7 @@ static void put_point(unsigned char *p, const tl_contact_point_record *r, uint32
     tl_put_word(p + 28, id);
 }
 
-/* Two points and two more, `point` bytes from each to the next. */
+/* Two points and two more, `point` bytes from each to the next: in this order, as an id may end in the next point. */
 static void put_points(unsigned char *p, const tl_contact_point_record *r, const tl_contact_point_record *more,
                        const uint32_t *ids, size_t point) {
     put_point(p, &r[0], ids[0]);
