@@ -38,6 +38,11 @@ static inline unsigned char *tl_put_words(unsigned char *p, const void *words, s
 }
 
 static inline uint32_t tl_get_word(const unsigned char *p) {
+    if (!tl_high_byte_first()) {
+        uint32_t w;
+        memcpy(&w, p, 4);
+        return w;
+    }
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 static inline uint64_t tl_get_long_word(const unsigned char *p) {

@@ -1,12 +1,11 @@
 #include "world/pack.h"
 
-#include "base/prefetch.h"
+#include "base/sums.h"
 #include "collide/lanes.h"
 
 #define BLOCK 32u /* bytes */
 #define RUN 256u
-#define MANY 8u     /* runs */
-#define AHEAD 4096u /* bytes that are asked for early */
+#define MANY 8u /* runs */
 
 /* The word of a block that comes k-th: of members of eight bytes the low half comes first. */
 static size_t place_of(size_t k, size_t word) { return word == 8u && tl_high_byte_first() ? k ^ 1u : k; }
@@ -186,17 +185,27 @@ size_t tl_pack_bound(size_t count, size_t stride) {
     return bytes + bytes / BLOCK + bytes / RUN + 2u + 32u;
 }
 
+static void put_mark(tl_marks *marks, size_t row) {
+    uint32_t *m = marks->first + row * marks->stride;
+    *m = *m < marks->value ? marks->value : *m;
+}
+
 /* Marks the rows that have one of the words, by bits, of the block at `at`. */
 static void put_marks(tl_marks *marks, size_t at, size_t stride, uint32_t words) {
     marks->count++;
     if (!marks->first) {
         return;
     }
+    if (stride == 4u) { /* a word is a row */
+        for (; words; words &= words - 1u) {
+            put_mark(marks, at / 4u + tl_low_bit(words));
+        }
+        return;
+    }
     for (size_t row = at / stride; row * stride < at + BLOCK; row++) {
         size_t from = row * stride < at ? 0 : row * stride - at, to = least(BLOCK, (row + 1u) * stride - at);
-        uint32_t *m = marks->first + row * marks->stride;
         if (words >> from / 4u & ((1u << (to - from) / 4u) - 1u)) {
-            *m = *m < marks->value ? marks->value : *m;
+            put_mark(marks, row);
         }
     }
 }
@@ -252,20 +261,69 @@ static uint32_t unpack_words(const unsigned char *p, unsigned char *to, size_t s
 
 #define MOST_OF_RUN (RUN + RUN / BLOCK) /* bytes after the first */
 
+/* The bytes of a block's words. As a rule they are as many as those of the block before: taken for granted, and looked
+ * at beside, the next block need not wait for the mask of this one. */
+typedef struct width {
+    uint32_t mask, bytes;
+} width;
+
+static uint32_t bytes_of(width *usual, uint32_t mask) {
+    if (mask != usual->mask) {
+        usual->mask = mask;
+        usual->bytes = 4u * count_of(mask);
+    }
+    return usual->bytes;
+}
+
+/* The mask of the k-th block of a run, which is at *p if the run has it. */
+static uint32_t mask_of(const unsigned char **p, uint32_t blocks, unsigned k) {
+    uint32_t is = blocks >> k & 1u, mask = **p & (0u - is);
+    *p += is;
+    return mask;
+}
+
 /* What pack_run wrote, of which MOST_OF_RUN bytes can be read. */
 static const unsigned char *unpack_run(const unsigned char *p, uint32_t blocks, unsigned char *data, size_t at,
                                        size_t stride, tl_marks *marks) {
+    width usual = {0, 0};
     for (unsigned k = 0; k < RUN / BLOCK; k++, at += BLOCK) {
-        uint32_t is = blocks >> k & 1u, mask = *p & (0u - is);
-        p += is;
-        uint32_t other = unpack_words(p, data + at, stride, mask);
-        p += 4u * count_of(mask);
-        if (other && stride == BLOCK) { /* a block is a row */
-            uint32_t none = 0, *m = marks->first ? marks->first + at / BLOCK * marks->stride : &none;
-            marks->count++;
-            *m = *m < marks->value ? marks->value : *m;
-        } else if (other) {
+        uint32_t mask = mask_of(&p, blocks, k), other = unpack_words(p, data + at, stride, mask);
+        p += bytes_of(&usual, mask);
+        if (other) {
             put_marks(marks, at, stride, other);
+        }
+    }
+    return p;
+}
+
+/* The words of `mask` of a row of a block, from p; the others are whatever they are. */
+static tl_i8 words_of(const unsigned char *p, uint32_t mask) {
+    if (are_first(mask)) { /* as a rule */
+        return words_at(p);
+    }
+    int32_t words[BLOCK / 4u];
+    for (unsigned w = 0; w < BLOCK / 4u; w++) {
+        memcpy(&words[w], p, 4);
+        p += 4u * (mask >> w & 1u);
+    }
+    return tl_i8_loadu(words);
+}
+
+/* The same where a block is a row: the row before is at hand. */
+static const unsigned char *unpack_run_of_rows(const unsigned char *p, uint32_t blocks, unsigned char *data, size_t at,
+                                               tl_marks *marks) {
+    width usual = {0, 0};
+    tl_i8 row = words_at(data + at - BLOCK);
+    for (unsigned k = 0; k < RUN / BLOCK; k++, at += BLOCK) {
+        uint32_t mask = mask_of(&p, blocks, k);
+        row = tl_i8_select(tl_m8_from_bits(mask), words_of(p, mask), row);
+        p += bytes_of(&usual, mask);
+        if (difference(row, words_at(data + at))) {
+            tl_i8_storeu((int32_t *)(void *)(data + at), row);
+            marks->count++;
+            if (marks->first) {
+                put_mark(marks, at / BLOCK);
+            }
         }
     }
     return p;
@@ -293,7 +351,8 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
             continue;
         }
         if (run == RUN && is_plain(at, stride, counting) && end - p >= (ptrdiff_t)MOST_OF_RUN) {
-            p = unpack_run(p, blocks, data, at, stride, marks);
+            p = stride == BLOCK ? unpack_run_of_rows(p, blocks, data, at, marks)
+                                : unpack_run(p, blocks, data, at, stride, marks);
             at += run;
             continue;
         }
@@ -318,35 +377,14 @@ const unsigned char *tl_unpack_rows(const unsigned char *p, const unsigned char 
     return p;
 }
 
-static uint64_t long_word(const unsigned char *p) {
-    uint64_t w;
-    memcpy(&w, p, 8);
-    return tl_high_byte_first() ? tl_get_long_word(p) : w;
-}
-
-#define STREAMS 4u
-
-/* Sums of words of eight bytes and sums of those sums in interleaved streams: Fletcher, "An arithmetic checksum for
- * serial transmissions", IEEE Trans. Communications 30(1), 1982. */
 uint64_t tl_pack_checksum(const unsigned char *p, size_t bytes) {
-    uint64_t sum[STREAMS] = {1, 2, 3, 4}, sums[STREAMS] = {0, 0, 0, 0};
-    size_t at = 0;
-    for (; bytes - at >= 16u * STREAMS; at += 16u * STREAMS) { /* two words a stream */
-        tl_prefetch((const void *)((uintptr_t)(p + at) + AHEAD));
-        for (unsigned k = 0; k < 2u * STREAMS; k++) {
-            sum[k % STREAMS] += long_word(p + at + 8u * k);
-            sums[k % STREAMS] += sum[k % STREAMS];
-        }
-    }
-    for (; at < bytes; at++) {
-        sum[0] += p[at];
-        sums[0] += sum[0];
-    }
+    tl_sums s = {{1, 2, 3, 4}, {0, 0, 0, 0}};
+    tl_sums_add(&s, p, bytes);
     uint64_t mix = bytes;
-    for (unsigned k = 0; k < STREAMS; k++) {
-        mix = (mix ^ sum[k]) * 0x9e3779b97f4a7c15u;
+    for (unsigned k = 0; k < TL_SUM_STREAMS; k++) {
+        mix = (mix ^ s.sum[k]) * 0x9e3779b97f4a7c15u;
         mix ^= mix >> 29;
-        mix = (mix ^ sums[k]) * 0x9e3779b97f4a7c15u;
+        mix = (mix ^ s.sums[k]) * 0x9e3779b97f4a7c15u;
         mix ^= mix >> 29;
     }
     return mix;

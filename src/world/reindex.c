@@ -148,8 +148,11 @@ static void drop_pairs(tl_header *h) {
 }
 
 static void renew_shapes(tl_header *h, uint32_t rows) {
+    const uint32_t *other = tl_island_parent(h);
+    const tl_body_meta *bodies = tl_bodies(h);
     for (uint32_t s = 0; s < rows; s++) {
         tl_shape_track *t = &tl_shape_tracks(h)[s];
+        const tl_shape_meta *m = &tl_shapes(h)[s];
         int alive = is_shape(h, s);
         if (t->stale == TL_SHAPE_OTHER) {
             tl_shape_leave_tree(h, s);
@@ -158,8 +161,8 @@ static void renew_shapes(tl_header *h, uint32_t rows) {
             if (alive) {
                 tl_shape_mark_moved(h, s);
             }
-        } else if (alive && (t->stale || tl_island_parent(h)[tl_shapes(h)[s].body])) {
-            if (tl_bodies(h)[tl_shapes(h)[s].body].flags & TL_BODY_AWAKE) {
+        } else if (alive && (t->stale || other[m->body])) {
+            if (bodies[m->body].flags & TL_BODY_AWAKE) {
                 tl_shape_mark_stale(h, s);
             } else {
                 tl_shape_mark_moved(h, s);
