@@ -227,14 +227,15 @@ static uint32_t order_joints(tl_header *h) {
 }
 
 /* The open group of a joint's kind in its colour that still has a free lane. */
-static tl_joint_group *find_group(tl_header *h, uint32_t first, uint32_t joint, int linked, uint32_t direct) {
+static tl_joint_group *find_group(tl_header *h, uint32_t first, uint32_t joint, int linked, uint32_t direct,
+                                  uint32_t loose) {
     const tl_joint_record *joints = tl_joints(h), *j = &joints[joint];
     const uint32_t *rows = tl_body_row(h);
     for (uint32_t i = h->joint_groups; i-- > first;) {
         tl_joint_group *g = &tl_joint_group_pool(h)[i];
         int shared = j->color == TL_COLORS && (holds_row(g->a, g->b, g->lanes, rows[j->body_a]) ||
                                                holds_row(g->a, g->b, g->lanes, rows[j->body_b]));
-        if (g->lanes < TL_LANES && !shared && (g->linked > 0) == linked && g->exact == direct &&
+        if (g->lanes < TL_LANES && !shared && (g->linked > 0) == linked && g->exact == direct && g->gives == loose &&
             tl_joints_alike(&joints[g->joint[0]], j)) {
             return g;
         }
@@ -260,9 +261,9 @@ void tl_stage_joint_groups(tl_step *step) {
         if (j->rows == 0 || place == TL_LINKAGE_READY) {
             continue;
         }
-        int linked = place != TL_LINKAGE_NONE && place != TL_LINKAGE_ALONE;
-        uint32_t direct = place != TL_LINKAGE_NONE;
-        tl_joint_group *g = find_group(h, first, joint, linked, direct);
+        uint32_t loose = place == TL_LINKAGE_LOOSE, direct = place != TL_LINKAGE_NONE && !loose;
+        int linked = direct && place != TL_LINKAGE_ALONE;
+        tl_joint_group *g = find_group(h, first, joint, linked, direct, loose);
         if (!g) {
             g = tl_joint_group_open(h, j, direct);
         }
@@ -270,6 +271,7 @@ void tl_stage_joint_groups(tl_step *step) {
             dropped++;
             continue;
         }
+        g->gives = loose;
         if (linked) {
             g->linked = tl_linked_rows(j);
             tl_linkage_places(h)[place] = (uint32_t)(g - tl_joint_group_pool(h)) * TL_LANES + g->lanes;

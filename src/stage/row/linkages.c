@@ -181,13 +181,16 @@ static float error_of(const tl_header *h, const tl_joint_record *j, talus_vec3 d
     return most;
 }
 
+/* m: how far a body that impulses move reaches, or is held from; 0 of one that they do not. */
+static float arm_of(const tl_header *h, uint32_t body, talus_vec3 held) {
+    return free_row(h, body) ? tl_max(tl_body_inertias(h)[body].reach, tl_length(held)) : 0.0f;
+}
+
 static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
     const tl_header *h = step->h;
     for (uint32_t k = 0; k < count; k++) {
         const tl_joint_record *j = &tl_joints(h)[order[k]];
-        float reach = 0.0f;
-        reach += free_row(h, j->body_a) ? tl_body_inertias(h)[j->body_a].reach : 0.0f;
-        reach += free_row(h, j->body_b) ? tl_body_inertias(h)[j->body_b].reach : 0.0f;
+        float reach = arm_of(h, j->body_a, j->place_a.position) + arm_of(h, j->body_b, j->place_b.position);
         talus_pose a = tl_row_pose_of(&tl_body_pose(h)[j->body_a]), b = tl_row_pose_of(&tl_body_pose(h)[j->body_b]);
         talus_vec3 d = tl_sub(tl_pose_point(&b, j->place_b.position), tl_pose_point(&a, j->place_a.position));
         float most = WILD_SHARE * reach; /* the rows' errors are no larger than d, but for those of distances */
@@ -211,8 +214,10 @@ static void find_components(const tl_step *step, finder *f) {
             continue;
         }
         uint32_t ends, exact, count = gather(h, awake[k], f->joints, &ends, &exact);
-        if (count > 1u && (is_easy(h, order + f->joints, count) || is_wild(step, order + f->joints, count))) {
+        if (count > 1u && is_easy(h, order + f->joints, count)) {
             leave(h, f->joints, count, TL_LINKAGE_APART); /* not to be gathered again from another joint */
+        } else if (count > 1u && is_wild(step, order + f->joints, count)) {
+            leave(h, f->joints, count, TL_LINKAGE_LOOSE);
         } else if (count > 1u) {
             uint32_t shape = shape_of(f, f->joints, count, ends);
             tl_linkage *l = &tl_linkages(h)[f->linkages++];
@@ -304,7 +309,7 @@ static void place_linkages(tl_step *step, finder *f) {
         }
         if (!settle(f, &l, s, s->wide > 0 ? TL_LANES : 1u) || (s->wide > 0 && !open_groups(f, &l, s))) {
             s->wide -= s->wide > 0;
-            leave(h, l.first_joint, s->nodes, TL_LINKAGE_NONE);
+            leave(h, l.first_joint, s->nodes, TL_LINKAGE_LOOSE);
             h->counters.joints_apart += s->nodes;
             continue;
         }

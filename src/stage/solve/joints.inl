@@ -11,6 +11,12 @@
 /* The share of an error that a sub-step takes back. */
 #define JOINT_SHARE 0.5f
 
+/* Joints that hang together in more than there is room to solve at once, as a net's, are damped springs instead: what
+ * their passes leave, taken back without a speed, would be work done for nothing, and the net would seethe. The turn in
+ * a sub-step, in radians, and the damping ratio. */
+#define LOOSE_TURN 1.5708f
+#define LOOSE_DAMPING 2.0f
+
 /* What a row is along: nothing but an angle, a direction, or an axis of the world, which is ROW_AXIS and its number. */
 enum { ROW_ANGULAR = 0, ROW_LINEAR = 1, ROW_AXIS = 2 };
 
@@ -172,16 +178,28 @@ static inline int is_exact(const tl_step *step, const tl_joint_group *g) { retur
 /* Whether what is found now stands in the impulses already, as that which the sub-step before left to this one. */
 static inline int counts_for_last(const tl_step *step, const tl_joint_group *g) { return step->deferred && g->exact; }
 
+/* From the impulses that meet the speeds with their errors to those of springs, without what gives way of the old. */
+static inline tl_f8 loosened(const tl_joint_row *row, tl_f8 x) {
+    float a = LOOSE_TURN * (2.0f * LOOSE_DAMPING + LOOSE_TURN), give = 1.0f / (1.0f + a);
+    return tl_f8_mul(tl_f8_set1(give), tl_f8_sub(tl_f8_mul(tl_f8_set1(a), x), tl_f8_load(row->impulse)));
+}
+static inline tl_f8 loose_speed(const tl_step *step, const tl_joint_row *row) {
+    float rate = LOOSE_TURN / (2.0f * LOOSE_DAMPING + LOOSE_TURN) * step->inverse_sub;
+    return tl_f8_mul(tl_f8_set1(rate), tl_f8_sub(tl_f8_load(row->error), tl_f8_load(row->lower)));
+}
+
 TL_INLINE void solve_equalities_of(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
                                    int before_move, uint32_t n) {
     tl_f8 x[6];
-    int keep = !counts_for_last(step, g);
+    int keep = !counts_for_last(step, g), loose = before_move && g->gives;
     for (uint32_t i = 0; i < n; i++) {
         tl_f8 speed = joint_speed(p, &rows[i], row_kind(g, i));
-        x[i] = tl_f8_neg(before_move ? tl_f8_add(speed, tl_f8_load(rows[i].curve)) : speed);
+        speed = before_move ? tl_f8_add(speed, tl_f8_load(rows[i].curve)) : speed;
+        x[i] = tl_f8_neg(loose ? tl_f8_add(speed, loose_speed(step, &rows[i])) : speed);
     }
     solve_factored(g, x, n);
     for (uint32_t i = 0; i < n; i++) {
+        x[i] = loose ? loosened(&rows[i], x[i]) : x[i];
         if (keep) {
             tl_f8_store(rows[i].impulse, tl_f8_add(tl_f8_load(rows[i].impulse), x[i]));
         }
@@ -263,11 +281,9 @@ static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
             tl_f8 push = tl_f8_mul(tl_f8_load(rows[k].mass), tl_f8_mul(share, tl_f8_max(tl_f8_neg(gap), zero)));
             joint_apply(&p, &rows[k], linear, tl_f8_mul(sign, tl_f8_select(soft, zero, push)));
         }
-        if (g->linked) {
-            store_joint_pair(pushes, g, &p);
-            continue;
+        if (!g->linked && !g->gives) {
+            push_equalities(g, rows, &p);
         }
-        push_equalities(g, rows, &p);
         store_joint_pair(pushes, g, &p);
     }
 }
