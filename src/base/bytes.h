@@ -46,7 +46,12 @@ static inline uint32_t tl_get_word(const unsigned char *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 static inline uint64_t tl_get_long_word(const unsigned char *p) {
-    return (uint64_t)tl_get_word(p + 4) << 32 | tl_get_word(p);
+    if (!tl_high_byte_first()) {
+        uint64_t w;
+        memcpy(&w, p, 8);
+        return w;
+    }
+    return (uint64_t)tl_get_word(p) | (uint64_t)tl_get_word(p + 4) << 32;
 }
 static inline void tl_get_words(const unsigned char *p, void *words, size_t count) {
     if (!tl_high_byte_first()) {

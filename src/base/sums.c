@@ -7,19 +7,13 @@
 
 #define AHEAD 4096u /* bytes that are asked for early */
 
-static uint64_t long_word(const unsigned char *p) {
-    uint64_t w;
-    memcpy(&w, p, 8);
-    return tl_high_byte_first() ? tl_get_long_word(p) : w;
-}
-
 void tl_sums_add(tl_sums *s, const unsigned char *p, size_t bytes) {
     tl_sums t = *s;
     size_t at = 0;
     for (; bytes - at >= 16u * TL_SUM_STREAMS; at += 16u * TL_SUM_STREAMS) { /* two words a stream */
         tl_prefetch((const void *)((uintptr_t)(p + at) + AHEAD));
         for (unsigned k = 0; k < 2u * TL_SUM_STREAMS; k++) {
-            t.sum[k % TL_SUM_STREAMS] += long_word(p + at + 8u * k);
+            t.sum[k % TL_SUM_STREAMS] += tl_get_long_word(p + at + 8u * k);
             t.sums[k % TL_SUM_STREAMS] += t.sum[k % TL_SUM_STREAMS];
         }
     }

@@ -114,10 +114,8 @@ static void by_advancement(search *s, talus_contact_time *out) {
     }
 }
 
-/*
- * Intervals from the left, number `index` of those of length 2^-level; what lies before it is free.
- * Levels end where a double still holds every bound of an interval.
- */
+/* Intervals from the left, number `index` of those of length 2^-level; what lies before it is free. Levels end where a
+ * double still holds every bound of an interval. */
 static void by_bisection(search *s, talus_contact_time *out) {
     tl_d3 closing = tl_d_sub(s->a->move, s->b->move);
     double most = tl_d_length(closing) + s->a->reach * s->a->angle + s->b->reach * s->b->angle;

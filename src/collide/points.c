@@ -2,6 +2,8 @@
  * the most area, each weighed against how much less deep it is. Metres. */
 #include "collide/points.h"
 
+#include "base/spread.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -172,20 +174,14 @@ void tl_candidates_write(const tl_candidates *all, const tl_touch *touch, tl_man
 
 /* How wide four points lie in the plane across n: the square of the area, to a factor; and their least separation. */
 static float width_of(const tl_manifold_point *p, talus_vec3 n, float *least) {
-    talus_vec3 u = tl_perpendicular(n), v = tl_cross(n, u);
-    float x[4], y[4], mx = 0.0f, my = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
+    talus_vec3 at[4];
     *least = p[0].separation;
     for (uint32_t i = 0; i < 4u; ++i) {
-        talus_vec3 d = tl_sub(p[i].position, p[0].position);
-        x[i] = tl_dot(d, u), y[i] = tl_dot(d, v);
-        mx += 0.25f * x[i], my += 0.25f * y[i];
+        at[i] = tl_sub(p[i].position, p[0].position);
         *least = tl_min(*least, p[i].separation);
     }
-    for (uint32_t i = 0; i < 4u; ++i) {
-        float dx = x[i] - mx, dy = y[i] - my;
-        xx += dx * dx, xy += dx * dy, yy += dy * dy;
-    }
-    return xx * yy - xy * xy;
+    tl_spread s = tl_spread_of(at, 4u, n);
+    return s.xx * s.yy - s.xy * s.xy;
 }
 
 static const tl_manifold_point *find_point(const tl_manifold *m, uint32_t id) {

@@ -3,6 +3,7 @@
 
 #include "base/prefetch.h"
 #include "base/sort.h"
+#include "base/spread.h"
 #include "stage/broad/refit.h"
 #include "stage/narrow/batch.h"
 #include "stage/narrow/query.h"
@@ -71,8 +72,6 @@ static talus_vec3 way_of(const contact_frames *f, const tl_contact_point_record 
     return tl_add(tl_sub(f->b.position, f->a.position), tl_sub(b, a));
 }
 
-#define SAME_NORMAL 0.985f /* the cosine of 10 degrees */
-
 /* Which points of two polyhedra make their manifold is a choice: either of two faces all but flush may be the
  * reference, four are taken of more corners, and a corner of three faces lies on one of them at a time. A point that is
  * left out bears nothing any more, the body sinks there until the next manifold has it again and leaves out another,
@@ -83,8 +82,7 @@ static uint32_t keep_point(tl_header *h, uint32_t c, const old_points *old, uint
     const tl_contact_meta *meta = &tl_contacts(h)[c];
     const talus_geometry *shapes = tl_shape_geometry(h);
     tl_contact_points *points = &tl_points(h)[c];
-    if (shapes[meta->shape_a].type < TALUS_BOX || shapes[meta->shape_b].type < TALUS_BOX ||
-        tl_dot(old->normal, normal_of(h, c)) < SAME_NORMAL) {
+    if (shapes[meta->shape_a].type < TALUS_BOX || shapes[meta->shape_b].type < TALUS_BOX) {
         return count;
     }
     contact_frames f = frames_of(h, c);
@@ -116,37 +114,29 @@ static uint32_t keep_point(tl_header *h, uint32_t c, const old_points *old, uint
  * is handed on to all that are there now, with the same sum and the same moments: x / n + M^-1 d, where d are places
  * from the middle and M the sum of d d^T. n is the normal in the frame of the points. */
 static void hand_on(const old_points *old, tl_contact_points *points, uint32_t count, talus_vec3 n) {
-    talus_vec3 moment = tl_v(0.0f, 0.0f, 0.0f), mean = moment, u, v;
-    float lost = 0.0f, share = 1.0f / (float)count, uu = 0.0f, uv = 0.0f, vv = 0.0f, x[TL_MANIFOLD_POINTS],
-          y[TL_MANIFOLD_POINTS];
+    talus_vec3 moment = tl_v(0.0f, 0.0f, 0.0f), at[TL_MANIFOLD_POINTS];
+    float lost = 0.0f, share = 1.0f / (float)count;
     for (uint32_t i = 0; i < old->count; i++) {
         if (old->of.p[i].impulse > 0.0f && !has_id(points, count, old->of.p[i].id)) {
             lost += old->of.p[i].impulse;
             moment = tl_mad(moment, old->of.p[i].impulse, place_on_a(&old->of.p[i]));
         }
     }
-    if (!(lost > 0.0f) || old->count < FACE_POINTS || count < FACE_POINTS || tl_dot(old->normal, n) < SAME_NORMAL) {
+    if (!(lost > 0.0f) || old->count < FACE_POINTS || count < FACE_POINTS) {
         return;
     }
-    u = tl_perpendicular(n), v = tl_cross(n, u);
     for (uint32_t k = 0; k < count; k++) {
-        const float *a = points->p[k].a;
-        mean = tl_mad(mean, share, tl_v(a[0], a[1], a[2]));
+        at[k] = place_on_a(&points->p[k]);
     }
-    for (uint32_t k = 0; k < count; k++) {
-        const float *a = points->p[k].a;
-        talus_vec3 d = tl_sub(tl_v(a[0], a[1], a[2]), mean);
-        x[k] = tl_dot(d, u), y[k] = tl_dot(d, v);
-        uu += x[k] * x[k], uv += x[k] * y[k], vv += y[k] * y[k];
-    }
-    talus_vec3 off = tl_mad(moment, -lost, mean);
-    float mx = tl_dot(off, u), my = tl_dot(off, v), det = uu * vv - uv * uv;
-    float inverse = det > FLAT * (uu + vv) * (uu + vv) ? 1.0f / det : 0.0f, before = lost, after = 0.0f;
-    float gx = inverse * (vv * mx - uv * my), gy = inverse * (uu * my - uv * mx);
+    tl_spread s = tl_spread_of(at, count, n);
+    talus_vec3 off = tl_mad(moment, -lost, s.mean);
+    float mx = tl_dot(off, s.u), my = tl_dot(off, s.v), det = s.xx * s.yy - s.xy * s.xy, both = s.xx + s.yy;
+    float inverse = det > FLAT * both * both ? 1.0f / det : 0.0f, before = lost, after = 0.0f;
+    float gx = inverse * (s.yy * mx - s.xy * my), gy = inverse * (s.xx * my - s.xy * mx);
     for (uint32_t k = 0; k < count; k++) {
         float *impulse = &points->p[k].impulse;
         before += *impulse;
-        *impulse = tl_max(*impulse + share * lost + x[k] * gx + y[k] * gy, 0.0f);
+        *impulse = tl_max(*impulse + share * lost + s.x[k] * gx + s.y[k] * gy, 0.0f);
         after += *impulse;
     }
     float scale = after < 3e38f ? before / after : 0.0f; /* what would have to pull does not, and the sum is the same */
@@ -155,7 +145,8 @@ static void hand_on(const old_points *old, tl_contact_points *points, uint32_t c
     }
 }
 
-#define SAME_PLACE 0.1f /* of the speculative margin */
+#define SAME_PLACE 0.1f    /* of the speculative margin */
+#define SAME_NORMAL 0.985f /* the cosine of 10 degrees */
 
 /* Whether a point of a manifold lies where another one does. */
 static int has_place(const tl_header *h, const tl_contact_points *points, uint32_t count,
@@ -171,15 +162,19 @@ static int has_place(const tl_header *h, const tl_contact_points *points, uint32
 }
 
 /* What becomes of the points that a new manifold of `count` points does not have: they stay, or what they bore is
- * handed on. Returns how many points there are then. */
+ * handed on, unless the way out is another. Returns how many points there are then. */
 static uint32_t carry_over(tl_header *h, uint32_t c, const old_points *old, uint32_t count) {
     tl_contact_points *points = &tl_points(h)[c];
+    talus_vec3 n = normal_of(h, c);
+    if (tl_dot(old->normal, n) < SAME_NORMAL) {
+        return count;
+    }
     for (uint32_t i = 0; i < old->count; i++) {
         if (!has_id(points, count, old->of.p[i].id) && !has_place(h, points, count, &old->of.p[i])) {
             count = keep_point(h, c, old, i, count);
         }
     }
-    hand_on(old, points, count, normal_of(h, c));
+    hand_on(old, points, count, n);
     return count;
 }
 

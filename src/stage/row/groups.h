@@ -38,7 +38,7 @@ typedef struct tl_linkage_room {
 int tl_linkage_cut(tl_step *step, tl_linkage *l, const tl_linkage_shape *s, tl_linkage_room *room);
 
 /* Finds the linkages among the awake joints, with the groups of those that are solved eight wide; linkage_of then has
- * for every awake joint its place, TL_LINKAGE_NONE or TL_LINKAGE_READY. O(awake joints + blocks). */
+ * for every awake joint its place, or TL_LINKAGE_NONE, _READY, _ALONE or _LOOSE. O(awake joints + blocks). */
 void tl_linkages_find(tl_step *step);
 
 /* Lets the joints of linkages that hang between several fixed places stretch a little, when their groups are made. */

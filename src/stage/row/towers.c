@@ -7,6 +7,7 @@
  * pressed. */
 #include <math.h>
 
+#include "base/spread.h"
 #include "stage/row/groups.h"
 
 #define LEANING 0.9f /* of what makes a tower fall: from here on it is pressed */
@@ -52,21 +53,15 @@ static uint32_t other_contact(const tl_header *h, uint32_t body, uint32_t but) {
 /* m^2: of the points on the body above from their middle, along the axis across n on which they are closest, which all
  * are in its frame. */
 static float spread_of(const tl_contact_points *points, uint32_t count, uint32_t side, talus_vec3 n, talus_vec3 *mean) {
-    talus_vec3 arm[TL_MANIFOLD_POINTS], u = tl_perpendicular(n), v = tl_cross(n, u);
-    *mean = tl_v(0.0f, 0.0f, 0.0f);
+    talus_vec3 arm[TL_MANIFOLD_POINTS];
     for (uint32_t k = 0; k < count; k++) {
         const float *p = side ? points->p[k].b : points->p[k].a;
         arm[k] = tl_v(p[0], p[1], p[2]);
-        *mean = tl_mad(*mean, 1.0f / (float)count, arm[k]);
     }
-    float uu = 0.0f, uv = 0.0f, vv = 0.0f;
-    for (uint32_t k = 0; k < count; k++) {
-        talus_vec3 d = tl_sub(arm[k], *mean);
-        float x = tl_dot(d, u), y = tl_dot(d, v);
-        uu += x * x, uv += x * y, vv += y * y;
-    }
-    float half = 0.5f * (uu - vv);
-    return (0.5f * (uu + vv) - sqrtf(half * half + uv * uv)) / (float)count;
+    tl_spread s = tl_spread_of(arm, count, n);
+    float half = 0.5f * (s.xx - s.yy);
+    *mean = s.mean;
+    return (0.5f * (s.xx + s.yy) - sqrtf(half * half + s.xy * s.xy)) / (float)count;
 }
 
 /* Adds the body and the contact that it stands on; returns whether it stands on that. */
