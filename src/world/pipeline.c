@@ -103,17 +103,18 @@ static void push_bodies(tl_step *step, const tl_kernels *k) {
     k->push(step, 0, step->rows);
 }
 
-/* Displacements that take errors back; in the last sub-step of a step also those that are hardly any. */
+/* Displacements that take errors back, joints' last, which nothing then moves again; in the last sub-step of a step
+ * also those that are hardly any. */
 static void push_back(tl_step *step, const tl_kernels *k, int last) {
     tl_header *h = step->h;
     uint32_t contacts = h->groups, joints = h->joint_groups;
     if (step->pushes) {
         step->waits = !last;
-        k->push_joints(step, 0, joints);
         k->push_contacts(step, 0, contacts);
+        k->press_errors(step, 0, h->presses);
+        k->push_joints(step, 0, joints);
         run_linkages(step, k, k->read_errors, k->apply_pushes);
         step->waits = 0;
-        k->press_errors(step, 0, h->presses);
         push_bodies(step, k);
     }
     step->again = 1;

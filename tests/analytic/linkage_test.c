@@ -217,6 +217,28 @@ static void too_much_on_one_body(void **state) {
     kit_end(&world);
 }
 
+/* The last of an arm's four light limbs is struck and whirls about its joint, up to two radians in a sub-step: it holds
+ * together all the same. */
+static void arm_that_whirls(void **state) {
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        talus_world world = world_of(0.0f, 0.0f, 0.0f);
+        talus_body before = {0, 0};
+        for (int k = 0; k < 4; k++) {
+            float x = 0.3f * (float)k;
+            talus_body limb = box_of(&world, kit_vec(x, 0.0f, 0.0f), kit_vec(0.08f, 0.05f, 0.05f), 0.5f);
+            if (k > 0) {
+                pin(&world, before, limb, kit_vec(x - 0.15f, 0.0f, 0.0f), 0);
+            }
+            before = limb;
+        }
+        set_velocity(&world, before, kit_vec(0.0f, 0.0f, 0.0f),
+                     kit_vec(0.0f, 40.0f * (float)(i % 2), 130.0f + 30.0f * (float)i));
+        BELOW(worst_of(&world, 60).joint_linear, 2e-3);
+        kit_end(&world);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chain_with_a_heavy_end),
@@ -227,6 +249,7 @@ int main(void) {
         cmocka_unit_test(door_on_two_hinges),
         cmocka_unit_test(joints_that_end),
         cmocka_unit_test(too_much_on_one_body),
+        cmocka_unit_test(arm_that_whirls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

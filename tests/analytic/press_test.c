@@ -103,6 +103,39 @@ static void slope(void **state) {
     }
 }
 
+/* A driven wheel, much heavier than the balls that jam under its paddles, stays on its axle. */
+static void wheel_amid_balls(void **state) {
+    (void)state;
+    talus_world world = world_of(0.0f, (float)-G, 0.0f);
+    floor_of(&world, 0.3f);
+    for (int side = -1; side < 2; side += 2) {
+        talus_shape_def wall = kit_box_def(0.5f, 4.0f, 1.0f);
+        wall.pose.position = kit_vec(2.2f * (float)side, 4.0f, 0.0f);
+        kit_shape(&world, talus_world_ground(&world), &wall);
+    }
+    talus_body wheel = box_of(&world, kit_vec(0.0f, 1.6f, 0.0f), kit_vec(1.2f, 0.08f, 0.4f), 0.3f);
+    talus_shape_def paddle = kit_box_def(0.08f, 1.2f, 0.4f);
+    kit_shape(&world, wheel, &paddle);
+    set_mass(&world, wheel, 100.0f);
+    talus_joint_def def = talus_joint_def_default();
+    talus_joint_make_revolute(&def);
+    def.b = wheel;
+    def.frame_a.position = kit_vec(0.0f, 1.6f, 0.0f);
+    def.frame_a.rotation.y = def.frame_b.rotation.y = -0.70710678f; /* x onto z */
+    def.frame_a.rotation.w = def.frame_b.rotation.w = 0.70710678f;
+    def.angular_drive[0].enabled = 1;
+    def.angular_drive[0].velocity_target = 5.0f, def.angular_drive[0].damping = 1e6f;
+    def.angular_drive[0].max_force = 5000.0f;
+    join(&world, &def);
+    for (int i = 0; i < 40; i++) {
+        talus_vec3 at = kit_vec(0.4f * (float)(i % 8) - 1.4f, 3.0f + 0.4f * (float)(i / 8), 0.0f);
+        OK(talus_body_set_locks(&world, ball_of(&world, at, 0.18f, 2.0f, 0.0f, 0.3f), talus_lock_plane(2)));
+    }
+    BELOW(worst_of(&world, 300).joint_linear, 1e-5);
+    assert_true(kit_spin(&world, wheel).z > 4.0f);
+    kit_end(&world);
+}
+
 /* What is alike, and what is heavy but bears nothing, is no press. */
 static void none(void **state) {
     (void)state;
@@ -165,8 +198,14 @@ static void restored(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(columns), cmocka_unit_test(slab),     cmocka_unit_test(blow),     cmocka_unit_test(slope),
-        cmocka_unit_test(none),    cmocka_unit_test(too_many), cmocka_unit_test(restored),
+        cmocka_unit_test(columns),
+        cmocka_unit_test(slab),
+        cmocka_unit_test(blow),
+        cmocka_unit_test(slope),
+        cmocka_unit_test(wheel_amid_balls),
+        cmocka_unit_test(none),
+        cmocka_unit_test(too_many),
+        cmocka_unit_test(restored),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -160,7 +160,7 @@ static int is_easy(const tl_header *h, const uint32_t *order, uint32_t count) {
 }
 
 /* What is torn apart or whirls is beyond what a linear solve can tell: taken back at once, its errors would fling it.
- */
+ * Joint by joint a tree of them holds together; rings would quarrel, and give instead. */
 #define WILD_SHARE 0.25f /* of the bodies' reach: how far off a joint may be */
 #define WILD_TURN 0.5f   /* rad in a sub-step: where the curve of an anchor's path is no guide any more */
 
@@ -217,7 +217,7 @@ static void find_components(const tl_step *step, finder *f) {
         if (count > 1u && is_easy(h, order + f->joints, count)) {
             leave(h, f->joints, count, TL_LINKAGE_APART); /* not to be gathered again from another joint */
         } else if (count > 1u && is_wild(step, order + f->joints, count)) {
-            leave(h, f->joints, count, TL_LINKAGE_LOOSE);
+            leave(h, f->joints, count, count > ends ? TL_LINKAGE_LOOSE : TL_LINKAGE_APART);
         } else if (count > 1u) {
             uint32_t shape = shape_of(f, f->joints, count, ends);
             tl_linkage *l = &tl_linkages(h)[f->linkages++];

@@ -1,15 +1,12 @@
 /* Joints solved eight at a time: drives, then limits, each row by projected Gauss-Seidel, then all equalities of a
- * joint at once by their factored matrix. Velocities and errors are kept apart: the velocity passes know no error, and
- * a share of it is taken back as displacements that leave no speed behind (the split of Guendelman, Bridson and Fedkiw,
+ * joint at once by their factored matrix. Velocities and errors are kept apart: the velocity passes know no error,
+ * which is taken back as displacements that leave no speed behind (the split of Guendelman, Bridson and Fedkiw,
  * "Nonconvex rigid bodies with stacking", SIGGRAPH 2003), so that a chain gains no energy from what its passes leave
  * unsolved. */
 
 /* Errors of what is exact grow by themselves alone. Up to these (m, rad) they are left to the step's last sub-step. */
 #define NEAR_AWAY 5e-6f
 #define NEAR_TURNED 5e-5f
-
-/* The share of an error that a sub-step takes back. */
-#define JOINT_SHARE 0.5f
 
 /* Joints that hang together in more than there is room to solve at once, as a net's, are damped springs instead: what
  * their passes leave, taken back without a speed, would be work done for nothing, and the net would seethe. The turn in
@@ -223,11 +220,11 @@ static void solve_equalities(const tl_step *step, const tl_joint_group *g, tl_jo
 }
 
 TL_INLINE void push_equalities_of(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, uint32_t n) {
-    tl_f8 x[6], share = tl_f8_set1(JOINT_SHARE);
+    tl_f8 x[6];
     for (uint32_t k = 0; k < n; k++) {
         tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
         error = tl_f8_add(error, joint_speed(p, &rows[k], row_kind(g, k)));
-        x[k] = tl_f8_neg(tl_f8_mul(share, error));
+        x[k] = tl_f8_neg(error);
     }
     solve_factored(g, x, n);
     for (uint32_t k = 0; k < n; k++) {
@@ -258,10 +255,10 @@ static int is_near(const tl_joint_group *g, const tl_joint_row *rows) {
     return !tl_m8_any(away);
 }
 
-/* Displacements that take back a share of the errors and of what is beyond hard limits. */
+/* Displacements that take back the errors and what is beyond hard limits. */
 static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
     float *pushes = tl_row_push(step->h)->f;
-    tl_f8 share = tl_f8_set1(JOINT_SHARE), zero = tl_f8_zero();
+    tl_f8 zero = tl_f8_zero();
     for (uint32_t i = first; i < last; i++) {
         const tl_joint_group *g = &tl_joint_group_pool(step->h)[i];
         const tl_joint_row *rows = tl_joint_row_pool(step->h) + g->first_row;
@@ -278,7 +275,7 @@ static void push_joints(const tl_step *step, uint32_t first, uint32_t last) {
             tl_f8 sign, gap = range_gap(&rows[k], &sign);
             tl_m8 soft = tl_f8_gt(tl_f8_add(tl_f8_load(rows[k].stiffness), tl_f8_load(rows[k].damping)), zero);
             gap = tl_f8_add(gap, tl_f8_mul(sign, joint_speed(&p, &rows[k], linear)));
-            tl_f8 push = tl_f8_mul(tl_f8_load(rows[k].mass), tl_f8_mul(share, tl_f8_max(tl_f8_neg(gap), zero)));
+            tl_f8 push = tl_f8_mul(tl_f8_load(rows[k].mass), tl_f8_max(tl_f8_neg(gap), zero));
             joint_apply(&p, &rows[k], linear, tl_f8_mul(sign, tl_f8_select(soft, zero, push)));
         }
         if (!g->linked && !g->gives) {
