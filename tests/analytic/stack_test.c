@@ -95,6 +95,35 @@ static void round_faces_rest(void **state) {
     stack_of_round(1);
 }
 
+/* Eighteen layers of three planks, each across the one below: struck, the tower sways at one hertz, and not more and
+ * more. */
+static void swaying_planks(void **state) {
+    (void)state;
+    talus_world_def def = talus_world_def_default();
+    def.enable_sleep = 0;
+    def.body_capacity = def.shape_capacity = 64;
+    talus_world world = kit_world(&def);
+    floor_of(&world, 0.5f);
+    talus_body plank[54];
+    for (int i = 0; i < 54; i++) {
+        int layer = i / 3, across = layer & 1;
+        float y = 0.3f + 0.6f * (float)layer, aside = (float)(i % 3 - 1);
+        talus_vec3 half = across ? kit_vec(0.49f, 0.3f, 1.5f) : kit_vec(1.5f, 0.3f, 0.49f);
+        plank[i] = box_of(&world, across ? kit_vec(aside, y, 0.0f) : kit_vec(0.0f, y, aside), half, 0.5f);
+        set_velocity(&world, plank[i], kit_vec(0.0f, 0.0f, 0.002f * y), kit_vec(0.0f, 0.0f, 0.0f));
+    }
+    float first = 0.0f, last = 0.0f;
+    for (int step = 0; step < 1800; step++) {
+        kit_steps(&world, 1);
+        float speed = fabsf(kit_velocity(&world, plank[52]).z);
+        first = step >= 120 && step < 240 ? fmaxf(first, speed) : first;
+        last = step >= 1680 ? fmaxf(last, speed) : last;
+    }
+    assert_true(first > 0.005f); /* m/s */
+    assert_true(last < 1.1f * first);
+    kit_end(&world);
+}
+
 /* A stack falls asleep while it is still on its way. */
 static void stack_sleeps(void **state) {
     (void)state;
@@ -214,9 +243,9 @@ static void tips_on_a_slope(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stack_stands),     cmocka_unit_test(stack_sleeps),    cmocka_unit_test(round_faces_rest),
-        cmocka_unit_test(load_taken_away),  cmocka_unit_test(pyramid_stands),  cmocka_unit_test(heavy_on_light),
-        cmocka_unit_test(tips_at_the_edge), cmocka_unit_test(tips_on_a_slope),
+        cmocka_unit_test(stack_stands),   cmocka_unit_test(stack_sleeps),     cmocka_unit_test(round_faces_rest),
+        cmocka_unit_test(swaying_planks), cmocka_unit_test(load_taken_away),  cmocka_unit_test(pyramid_stands),
+        cmocka_unit_test(heavy_on_light), cmocka_unit_test(tips_at_the_edge), cmocka_unit_test(tips_on_a_slope),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

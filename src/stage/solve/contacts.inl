@@ -170,7 +170,7 @@ static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_
     tl_f8 zero = tl_f8_zero(), one = tl_f8_set1(1.0f), inverse_h = tl_f8_set1(step->inverse_sub);
     tl_f8 rate = tl_f8_set1(step->bias_rate), push = tl_f8_set1(-step->h->settings.push_speed);
     tl_f8 soft_mass = tl_f8_set1(step->mass_scale), soft_impulse = tl_f8_set1(step->impulse_scale);
-    tl_f8 lift = lifted ? tl_f8_load(g->lift) : zero;
+    tl_f8 lift = lifted ? tl_f8_load(g->lift) : zero, over = with_bias ? one : tl_f8_load(g->over);
     tl_m8 hard = tl_m8_from_bits(pressed ? g->pressed : 0u); /* they have no need of a spring */
     for (uint32_t i = 0; i < g->points; i++) {
         tl_contact_lane_point *c = &g->point[i];
@@ -178,7 +178,7 @@ static inline void solve_normals(const tl_step *step, tl_contact_group *g, pair_
         tl_f8 gap = gap_now(m, c, ja, jb);
         gap = pressed ? tl_f8_select(hard, tl_f8_max(gap, zero), gap) : gap;
         tl_m8 apart = pressed ? tl_m8_or(hard, tl_f8_gt(gap, zero)) : tl_f8_gt(gap, zero);
-        tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_load(c->mass);
+        tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_mul(tl_f8_load(c->mass), over);
         tl_f8 old = tl_f8_load(c->impulse), now = old;
         if (with_bias) {
             gap = lifted ? tl_f8_sub(gap, lift) : gap;

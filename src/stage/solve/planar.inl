@@ -63,6 +63,7 @@ TL_INLINE void flat_normals(const tl_step *step, tl_contact_group *g, flat_pair 
     /* a_2 of set_softness */
     tl_f8 stiff = tl_f8_mul(tl_f8_load(g->stiff), tl_f8_set1(step->mass_scale / step->impulse_scale));
     tl_f8 soft_impulse = tl_f8_div(one, tl_f8_add(one, stiff)), soft_mass = tl_f8_mul(stiff, soft_impulse);
+    tl_f8 over = with_bias ? one : tl_f8_load(g->over);
     tl_m8 hard = tl_m8_from_bits(pressed ? g->pressed : 0u);
     for (uint32_t i = 0; i < g->points; i++) {
         tl_contact_lane_point *c = &g->point[i];
@@ -70,7 +71,7 @@ TL_INLINE void flat_normals(const tl_step *step, tl_contact_group *g, flat_pair 
         tl_f8 gap = tl_f8_add(tl_f8_load(c->gap), flat_speed(moved, &r));
         gap = pressed ? tl_f8_select(hard, tl_f8_max(gap, zero), gap) : gap;
         tl_m8 apart = pressed ? tl_m8_or(hard, tl_f8_gt(gap, zero)) : tl_f8_gt(gap, zero);
-        tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_load(c->mass);
+        tl_f8 bias = tl_f8_and_mask(apart, tl_f8_mul(gap, inverse_h)), mass = tl_f8_mul(tl_f8_load(c->mass), over);
         tl_f8 old = tl_f8_load(c->impulse), now = old;
         if (with_bias) {
             gap = tl_f8_sub(gap, tl_f8_load(g->lift));

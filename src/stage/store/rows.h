@@ -62,6 +62,7 @@ typedef struct tl_contact_group {
     float slid[2][TL_LANES]; /* m: how far b has slid on a since the manifold was made, when the step began */
     float held[TL_LANES];    /* 1: it did not slide in the last step; else 0 */
     float lift[TL_LANES];    /* m: as how much deeper than they are the points count */
+    float over[TL_LANES];    /* how far the normals' pass after the move goes: 1, or more where a face rests */
     float static_friction[TL_LANES], dynamic_friction[TL_LANES], restitution[TL_LANES], rolling[TL_LANES];
     float stiff[TL_LANES]; /* in a plane: how much stiffer the springs of points are */
     float tangent_impulse[2][TL_LANES], twist_impulse[TL_LANES], rolling_impulse[2][TL_LANES];
