@@ -67,11 +67,10 @@ static inline q8 turned_by(q8 q, q8 d) {
                  tl_f8_add(q.z, tl_f8_mad(d.z, f, sum.z)), tl_f8_add(q.w, tl_f8_mad(d.w, f, sum.w)));
 }
 
+/* By halves of rows, which is how the constraints' passes store them: what was just stored is at hand sooner. */
 TL_INLINE void load_eight(const tl_row8 *rows, tl_f8 out[8]) {
-    for (int k = 0; k < 8; k++) {
-        out[k] = tl_f8_load(rows[k].f);
-    }
-    tl_f8_transpose(out);
+    const uint32_t each[TL_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
+    tl_f8_load_rows(rows->f, each, out);
 }
 
 TL_INLINE void store_eight(tl_row8 *rows, tl_f8 in[8]) {
