@@ -101,7 +101,9 @@ enum {
                          * along frame a, as others are */
     TL_JOINT_AXES = 2,  /* others are along frame a or tell how it stands to frame b */
     TL_JOINT_A = 4,     /* some body a has a row, */
-    TL_JOINT_B = 8      /* some body b; a side on which none has is left out, unless the group is linked */
+    TL_JOINT_B = 8,     /* some body b; a side on which none has is left out, unless the group is linked */
+    TL_JOINT_TURN = 16, /* some tell how frame b is turned in frame a */
+    TL_JOINT_PLAIN = 32 /* its equalities are three along axes, and then angles alone */
 };
 
 /* joint_group.far: an error is so large that taking it back leaves one; the group is pushed again; errors are so small
