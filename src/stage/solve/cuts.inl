@@ -64,30 +64,47 @@ static void gather_cuts(const tl_header *h, const tl_linkage *l, const float *v,
     }
 }
 
-static void cut_factor(const tl_header *h, const tl_linkage *l, float *v) {
+TL_INLINE void cut_matrix(const tl_header *h, const tl_linkage *l, const uint32_t *live, float *v, uint32_t n) {
     const tl_block_node *node = tl_linkage_nodes(h) + l->cut;
     const tl_block *block = tl_linkage_blocks(h);
-    uint32_t *live = tl_linkage_live(h) + l->first_place, inner = l->inner, rows = node->rows;
+    uint32_t inner = l->inner;
     cuts_before before;
+    link_lane last = {&before.g, before.rows, 0};
+    find_cuts_before(cut_group(h, l, inner), live[inner], &before);
+    for (uint32_t j = 0; j <= inner; j++) {
+        link_lane column = cut_group(h, l, j);
+        float *d = v + node[j].diagonal * TL_WIDTH;
+        if (n) {
+            diagonal_even(column, d, n);
+        } else {
+            link_diagonal(column, live[j], d);
+        }
+        for (uint32_t k = 0; k < node[j].blocks; k++) {
+            const tl_block *b = &block[node[j].first + k];
+            link_lane row = b->node <= inner ? cut_group(h, l, b->node) : last;
+            if (n) {
+                block_even(b, row, column, v + b->values * TL_WIDTH, n);
+            } else {
+                link_block(b, row, column, live[b->node], live[j], v + b->values * TL_WIDTH);
+            }
+        }
+    }
+}
+
+static void cut_factor(const tl_header *h, tl_linkage *l, float *v) {
+    const tl_block_node *node = tl_linkage_nodes(h) + l->cut;
+    uint32_t *live = tl_linkage_live(h) + l->first_place, inner = l->inner, rows = node->rows;
     for (uint32_t j = 0; j <= inner; j++) {
         live[j] = live_rows(cut_group(h, l, j));
-        link_diagonal(cut_group(h, l, j), live[j], v + node[j].diagonal * TL_WIDTH);
     }
     for (uint32_t j = inner + 1u; j < inner + 2u + l->cuts; j++) {
         live[j] = live[inner];
     }
+    l->even = even_rows(cut_group(h, l, 0).g); /* all its joints are alike */
+    LDLT_EVEN(l->even, cut_matrix, h, l, live, v)
     memset(v + node[inner + 1u].diagonal * TL_WIDTH, 0, rows * (rows + 1u) / 2u * TL_WIDTH * sizeof *v);
-    find_cuts_before(cut_group(h, l, inner), live[inner], &before);
-    for (uint32_t j = 0; j <= inner; j++) {
-        for (uint32_t k = 0; k < node[j].blocks; k++) {
-            const tl_block *b = &block[node[j].first + k];
-            link_lane last = {&before.g, before.rows, 0};
-            link_lane row = b->node <= inner ? cut_group(h, l, b->node) : last;
-            link_block(b, row, cut_group(h, l, j), live[b->node], live[j], v + b->values * TL_WIDTH);
-        }
-    }
     ldlt_raise(node, live, inner + 1u, v);
-    ldlt_eliminate(node, block, live, inner, v);
+    ldlt_eliminate(node, tl_linkage_blocks(h), live, inner, v, l->even);
     gather_cuts(h, l, v, v + l->cut_values);
     tl_cuts_factor(h, l);
 }
@@ -103,7 +120,7 @@ static int cut_is_stale(const tl_header *h, const tl_linkage *l) {
 }
 
 /* The x of a cut linkage's joints becomes the impulses that meet it. */
-static void cut_solve(const tl_header *h, const tl_linkage *l) {
+static void cut_solve(const tl_header *h, tl_linkage *l) {
     const tl_block_node *node = tl_linkage_nodes(h) + l->cut, *cut = node + l->inner + 2u;
     const uint32_t *live = tl_linkage_live(h) + l->first_place, inner = l->inner;
     float *v = tl_linkage_values(h) + l->values, *rest = v + l->cut_values;
@@ -115,7 +132,7 @@ static void cut_solve(const tl_header *h, const tl_linkage *l) {
         memcpy(v + node[j].x * TL_WIDTH, cut_group(h, l, j).g->x, live[j] * TL_WIDTH * sizeof *v);
     }
     memset(before, 0, live[inner] * TL_WIDTH * sizeof *v);
-    ldlt_forward_pass(node, tl_linkage_blocks(h), live, inner, v);
+    ldlt_forward_pass(node, tl_linkage_blocks(h), live, inner, v, l->even);
     for (uint32_t i = 0; i < live[inner]; i++, behind += TL_WIDTH, before += TL_WIDTH) {
         float next[TL_LANES];
         lane_down(before, next);
@@ -132,7 +149,7 @@ static void cut_solve(const tl_header *h, const tl_linkage *l) {
         }
         lane_up(behind, before);
     }
-    ldlt_back_pass(node, tl_linkage_blocks(h), live, inner, v);
+    ldlt_back_pass(node, tl_linkage_blocks(h), live, inner, v, l->even);
     for (uint32_t j = 0; j <= inner; j++) {
         tl_joint_group *g = &tl_joint_group_pool(h)[l->first_group + j];
         memcpy(g->x, v + node[j].x * TL_WIDTH, live[j] * TL_WIDTH * sizeof *v);

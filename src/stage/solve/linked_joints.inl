@@ -206,7 +206,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
 
 static void solve_linkages(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
-        const tl_linkage *l = &tl_linkages(step->h)[i];
+        tl_linkage *l = &tl_linkages(step->h)[i];
         if ((step->again && !l->far) || (step->skip_exact && l->exact) || (step->waits && l->near)) {
             continue;
         }
