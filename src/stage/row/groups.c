@@ -145,7 +145,9 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint
     }
     tl_joint_group *g = &tl_joint_group_pool(h)[h->joint_groups++];
     memset(g, 0, offsetof(tl_joint_group, k));
-    memset(g->x, 0, sizeof g->x);
+    for (uint32_t r = 0; r < 3u; r++) { /* the force of lanes without a joint */
+        memset(g->x[r], 0, sizeof g->x[r]);
+    }
     for (uint32_t k = 0; k < TL_LANES; k++) {
         g->qa[3][k] = g->qb[3][k] = 1.0f;
     }
@@ -159,7 +161,13 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint
         }
     }
     for (uint32_t r = 0; r < j->rows; r++) {
-        memset(tl_joint_row_pool(h)[g->first_row + r].lower, 0, sizeof(tl_joint_row) - offsetof(tl_joint_row, lower));
+        tl_joint_row *row = &tl_joint_row_pool(h)[g->first_row + r];
+        if (r < j->fixed) { /* an equality has no more */
+            memset(row->lower, 0, sizeof row->lower);
+            memset(row->impulse, 0, sizeof row->impulse);
+        } else {
+            memset(row->lower, 0, sizeof *row - offsetof(tl_joint_row, lower));
+        }
     }
     h->joint_rows += j->rows;
     return g;

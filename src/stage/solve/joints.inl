@@ -314,8 +314,8 @@ TL_INLINE void apply_rows(const tl_joint_row *rows, const tl_joint_group *g, pai
     }
 }
 
-static void apply_all(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, float sign, int turn) {
-    IN_FORM(g, apply_rows, rows, g, p, sign, turn)
+TL_INLINE void apply_all(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, float sign, int turn) {
+    IN_LINKED_FORM(g, g->fixed, apply_rows, rows, g, p, sign, turn)
     for (uint32_t k = g->fixed; k < g->rows; k++) {
         joint_apply(p, &rows[k], row_kind(g, k), tl_f8_mul(tl_f8_set1(sign), tl_f8_load(rows[k].impulse)));
     }
