@@ -7,7 +7,7 @@
 
 #define TL_WIDTH 1u
 #define TL_INLINE static inline
-#define TL_UNROLL /* what is short is unrolled anyway */
+#define TL_UNROLL /* what is as short as with single floats is unrolled anyway */
 
 typedef float wf;
 typedef uint32_t wi;

@@ -223,16 +223,18 @@ static void ldlt_raise(const tl_block_node *node, const uint32_t *live, uint32_t
 
 /* Where all nodes have n rows, and all of these are live, n is known: the usual numbers are compiled on their own. */
 #define LDLT_EVEN(n, f, ...)                                                                                           \
-    switch (n) {                                                                                                       \
-    case 3:                                                                                                            \
-        f(__VA_ARGS__, 3u);                                                                                            \
-        break;                                                                                                         \
-    case 5:                                                                                                            \
-        f(__VA_ARGS__, 5u);                                                                                            \
-        break;                                                                                                         \
-    default:                                                                                                           \
-        f(__VA_ARGS__, 0u);                                                                                            \
-    }
+    do {                                                                                                               \
+        switch (n) {                                                                                                   \
+        case 3:                                                                                                        \
+            f(__VA_ARGS__, 3u);                                                                                        \
+            break;                                                                                                     \
+        case 5:                                                                                                        \
+            f(__VA_ARGS__, 5u);                                                                                        \
+            break;                                                                                                     \
+        default:                                                                                                       \
+            f(__VA_ARGS__, 0u);                                                                                        \
+        }                                                                                                              \
+    } while (0)
 
 static inline void ldlt_eliminate_nodes(const tl_block_node *node, const tl_block *block, const uint32_t *live,
                                         uint32_t nodes, float *v, uint32_t n) {
@@ -265,7 +267,7 @@ static inline void ldlt_eliminate_nodes(const tl_block_node *node, const tl_bloc
 /* Eliminates the first nodes; what is left of others is what they have to do with each other without these. */
 static void ldlt_eliminate(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
                            float *v, uint32_t even) {
-    LDLT_EVEN(even, ldlt_eliminate_nodes, node, block, live, nodes, v)
+    LDLT_EVEN(even, ldlt_eliminate_nodes, node, block, live, nodes, v);
 }
 
 static void ldlt_factor(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
@@ -441,12 +443,12 @@ static inline void ldlt_back_nodes(const tl_block_node *node, const tl_block *bl
 /* From the first nodes' right-hand sides to what is left of those of others, and from the others' solution back. */
 static void ldlt_forward_pass(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
                               float *v, uint32_t even) {
-    LDLT_EVEN(even, ldlt_forward_nodes, node, block, live, nodes, v)
+    LDLT_EVEN(even, ldlt_forward_nodes, node, block, live, nodes, v);
 }
 
 static void ldlt_back_pass(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
                            float *v, uint32_t even) {
-    LDLT_EVEN(even, ldlt_back_nodes, node, block, live, nodes, v)
+    LDLT_EVEN(even, ldlt_back_nodes, node, block, live, nodes, v);
 }
 
 /* The nodes' right-hand sides become the solution. */

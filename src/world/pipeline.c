@@ -110,10 +110,14 @@ static void push_back(tl_step *step, const tl_kernels *k, int last) {
     if (step->pushes) {
         step->waits = !last;
         k->push_joints(step, 0, joints);
-        k->push_contacts(step, 0, contacts);
+        if (contacts) {
+            k->push_contacts(step, 0, contacts);
+        }
         run_linkages(step, k, k->read_errors, k->apply_pushes);
         step->waits = 0;
-        k->press_errors(step, 0, h->presses);
+        if (h->presses) {
+            k->press_errors(step, 0, h->presses);
+        }
         push_bodies(step, k);
     }
     step->again = 1;

@@ -296,35 +296,39 @@ static inline int row_kind(const tl_joint_group *g, uint32_t k) {
 
 /* Calls f(..., form, rows). */
 #define IN_FORM(g, f, ...)                                                                                             \
-    switch (form_of(g, (g)->fixed)) {                                                                                  \
-    case FORM_OF(3u, FORM_WORLD):                                                                                      \
-        f(__VA_ARGS__, FORM_WORLD, 3u);                                                                                \
-        break;                                                                                                         \
-    case FORM_OF(3u, FORM_FRAME):                                                                                      \
-        f(__VA_ARGS__, FORM_FRAME, 3u);                                                                                \
-        break;                                                                                                         \
-    case FORM_OF(5u, FORM_WORLD):                                                                                      \
-        f(__VA_ARGS__, FORM_WORLD, 5u);                                                                                \
-        break;                                                                                                         \
-    case FORM_OF(5u, FORM_FRAME):                                                                                      \
-        f(__VA_ARGS__, FORM_FRAME, 5u);                                                                                \
-        break;                                                                                                         \
-    default:                                                                                                           \
-        f(__VA_ARGS__, FORM_ANY, (g)->fixed);                                                                          \
-    }
+    do {                                                                                                               \
+        switch (form_of(g, (g)->fixed)) {                                                                              \
+        case FORM_OF(3u, FORM_WORLD):                                                                                  \
+            f(__VA_ARGS__, FORM_WORLD, 3u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(3u, FORM_FRAME):                                                                                  \
+            f(__VA_ARGS__, FORM_FRAME, 3u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(5u, FORM_WORLD):                                                                                  \
+            f(__VA_ARGS__, FORM_WORLD, 5u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(5u, FORM_FRAME):                                                                                  \
+            f(__VA_ARGS__, FORM_FRAME, 5u);                                                                            \
+            break;                                                                                                     \
+        default:                                                                                                       \
+            f(__VA_ARGS__, FORM_ANY, (g)->fixed);                                                                      \
+        }                                                                                                              \
+    } while (0)
 
 /* The same for linked joints, whose points are held along the axes of the world. */
 #define IN_LINKED_FORM(g, rows, f, ...)                                                                                \
-    switch (form_of(g, rows)) {                                                                                        \
-    case FORM_OF(3u, FORM_WORLD):                                                                                      \
-        f(__VA_ARGS__, FORM_WORLD, 3u);                                                                                \
-        break;                                                                                                         \
-    case FORM_OF(5u, FORM_WORLD):                                                                                      \
-        f(__VA_ARGS__, FORM_WORLD, 5u);                                                                                \
-        break;                                                                                                         \
-    default:                                                                                                           \
-        f(__VA_ARGS__, FORM_ANY, rows);                                                                                \
-    }
+    do {                                                                                                               \
+        switch (form_of(g, rows)) {                                                                                    \
+        case FORM_OF(3u, FORM_WORLD):                                                                                  \
+            f(__VA_ARGS__, FORM_WORLD, 3u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(5u, FORM_WORLD):                                                                                  \
+            f(__VA_ARGS__, FORM_WORLD, 5u);                                                                            \
+            break;                                                                                                     \
+        default:                                                                                                       \
+            f(__VA_ARGS__, FORM_ANY, rows);                                                                            \
+        }                                                                                                              \
+    } while (0)
 
 TL_INLINE int kind_in(uint32_t form, const tl_joint_group *g, uint32_t k) {
     if (form == FORM_ANY) {
@@ -380,7 +384,7 @@ TL_INLINE void fill_matrix_of(const joint_bodies *c, tl_joint_group *g, const tl
 }
 
 static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
-    IN_LINKED_FORM(g, g->linked, fill_matrix_of, c, g, rows)
+    IN_LINKED_FORM(g, g->linked, fill_matrix_of, c, g, rows);
 }
 
 /* L D L^T of the equalities' matrix, row by row; the diagonal holds 1 / D (Golub and Van Loan, 4.1.2). */
@@ -414,7 +418,7 @@ TL_INLINE void factor_equalities_of(const joint_bodies *c, tl_joint_group *g, co
 }
 
 static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
-    IN_FORM(g, factor_equalities_of, c, g, rows)
+    IN_FORM(g, factor_equalities_of, c, g, rows);
 }
 
 static void make_joint_rows(const tl_step *step, tl_joint_group *g) {

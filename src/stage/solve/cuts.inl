@@ -110,11 +110,11 @@ static void cut_factor(const tl_header *h, tl_linkage *l, float *v) {
         live[j] = live[inner];
     }
     l->even = even_rows(cut_group(h, l, 0).g); /* all its joints are alike */
-    LDLT_EVEN(l->even, cut_matrix, h, l, live, v)
+    LDLT_EVEN(l->even, cut_matrix, h, l, live, v);
     memset(v + node[inner + 1u].diagonal * TL_WIDTH, 0, rows * (rows + 1u) / 2u * TL_WIDTH * sizeof *v);
     ldlt_raise(node, live, inner + 1u, v);
     ldlt_eliminate(node, tl_linkage_blocks(h), live, inner, v, l->even);
-    LDLT_EVEN(l->even, gather_cuts, h, l, v, v + l->cut_values)
+    LDLT_EVEN(l->even, gather_cuts, h, l, v, v + l->cut_values);
     tl_cuts_factor(h, l);
 }
 

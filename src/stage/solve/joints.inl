@@ -205,7 +205,7 @@ TL_INLINE void solve_equalities_of(const tl_step *step, const tl_joint_group *g,
 
 static void solve_equalities(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
                              int before_move) {
-    IN_FORM(g, solve_equalities_of, step, g, rows, p, before_move)
+    IN_FORM(g, solve_equalities_of, step, g, rows, p, before_move);
 }
 
 TL_INLINE void push_equalities_of(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, uint32_t form,
@@ -225,7 +225,7 @@ TL_INLINE void push_equalities_of(const tl_joint_group *g, const tl_joint_row *r
 }
 
 static void push_equalities(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p) {
-    IN_FORM(g, push_equalities_of, g, rows, p)
+    IN_FORM(g, push_equalities_of, g, rows, p);
 }
 
 /* Whether the errors of an exact group, whose bodies nothing else displaces, may wait. */
@@ -242,7 +242,7 @@ TL_INLINE void near_of_form(const tl_joint_group *g, const tl_joint_row *rows, i
 
 static int is_near(const tl_joint_group *g, const tl_joint_row *rows) {
     int near = 0;
-    IN_FORM(g, near_of_form, g, rows, &near)
+    IN_FORM(g, near_of_form, g, rows, &near);
     return near;
 }
 
@@ -315,7 +315,7 @@ TL_INLINE void apply_rows(const tl_joint_row *rows, const tl_joint_group *g, pai
 }
 
 TL_INLINE void apply_all(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, float sign, int turn) {
-    IN_LINKED_FORM(g, g->fixed, apply_rows, rows, g, p, sign, turn)
+    IN_LINKED_FORM(g, g->fixed, apply_rows, rows, g, p, sign, turn);
     for (uint32_t k = g->fixed; k < g->rows; k++) {
         joint_apply(p, &rows[k], row_kind(g, k), tl_f8_mul(tl_f8_set1(sign), tl_f8_load(rows[k].impulse)));
     }

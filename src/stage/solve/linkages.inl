@@ -178,7 +178,7 @@ static void link_factor(const tl_header *h, tl_linkage *l, float *v) {
         live[j] = live_rows(link_of(h, l, j));
         l->even = even_rows(link_of(h, l, j).g) == node->rows ? l->even : 0u;
     }
-    LDLT_EVEN(l->even, link_matrix, h, l, live, v)
+    LDLT_EVEN(l->even, link_matrix, h, l, live, v);
     ldlt_factor(node, tl_linkage_blocks(h), live, l->nodes, v, l->even);
 }
 

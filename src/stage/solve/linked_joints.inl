@@ -80,7 +80,7 @@ static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) 
         }
         pair_velocity p;
         load_linked_pair(tl_row_velocity(step->h)->f, g, &p);
-        IN_LINKED_FORM(g, g->fixed, read_speeds, step, g, rows, &p)
+        IN_LINKED_FORM(g, g->fixed, read_speeds, step, g, rows, &p);
         for (uint32_t k = g->fixed; k < g->linked; k++) {
             read_range(step, g, rows, k, &p);
         }
@@ -126,7 +126,7 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
         pair_velocity p;
         load_linked_pair(tl_row_push(step->h)->f, g, &p);
         tl_m8 far = tl_m8_zero();
-        IN_LINKED_FORM(g, g->fixed, read_equalities, step, g, rows, &p, &far)
+        IN_LINKED_FORM(g, g->fixed, read_equalities, step, g, rows, &p, &far);
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(far) ? (uint32_t)TL_FAR_NOW : 0u);
         g->far |= step->waits && g->exact && is_near(g, rows) ? (uint32_t)TL_FAR_NOT : 0u;
         for (uint32_t k = g->fixed; k < g->linked; k++) {
@@ -163,7 +163,7 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
         load_linked_pair(tl_row_velocity(step->h)->f, g, &p);
         v8 pull = v8_zero();
         tl_m8 pulls = tl_m8_zero();
-        IN_LINKED_FORM(g, g->fixed, apply_equalities, step, g, rows, &p, &pull)
+        IN_LINKED_FORM(g, g->fixed, apply_equalities, step, g, rows, &p, &pull);
         for (uint32_t k = g->fixed; k < g->linked; k++) {
             tl_f8 old = tl_f8_load(rows[k].impulse), now = tl_f8_add(old, tl_f8_load(g->x[k]));
             tl_f8 outward = tl_f8_mul(range_sign(&rows[k]), now);
@@ -199,7 +199,7 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
         }
         pair_velocity p;
         load_linked_pair(tl_row_push(step->h)->f, g, &p);
-        IN_LINKED_FORM(g, g->linked, push_rows, g, rows, &p)
+        IN_LINKED_FORM(g, g->linked, push_rows, g, rows, &p);
         store_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
     }
 }

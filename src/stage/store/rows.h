@@ -159,7 +159,7 @@ typedef struct tl_linkage {
     /* Of one that is cut into pieces: joints of a piece, cuts (0: it is not cut), groups from, nodes of a piece and
      * then of the cuts, values of the cuts behind those of the pieces */
     uint32_t inner, cuts, first_group, cut, cut_values;
-    uint32_t even; /* as it was factored: the rows of each node, if all have as many and all hold; else 0 */
+    uint32_t even; /* as it was factored: rows of each node, if all hold a point and then angles, and no more; else 0 */
 } tl_linkage;
 
 #define TL_MOST_PRESSED 128u
