@@ -84,6 +84,14 @@
 #define TL_INLINE static inline
 #endif
 
+/* Of a loop over rows whose number the compiler mostly knows, six at most: to be taken apart however long its body is.
+ */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(TL_LANES_SCALAR)
+#define TL_UNROLL _Pragma("GCC unroll 6")
+#else
+#define TL_UNROLL
+#endif
+
 #if defined(TL_LANES_SCALAR)
 #include "scalar.h"
 #elif defined(TL_LANES_SSE2)

@@ -6,6 +6,8 @@
 #include "base/vec.h"
 
 #define TL_WIDTH 1u
+#define TL_INLINE static inline
+#define TL_UNROLL /* what is as short as with single floats is unrolled anyway */
 
 typedef float wf;
 typedef uint32_t wi;

@@ -180,29 +180,33 @@ static inline void ldlt_pair_of(const float *d, float *const b[2], float *const 
     }
 }
 
-static void ldlt_pair_three(const float *d, float *const b[2], float *const t[2], float *x, uint32_t stride,
-                            uint32_t x_stride) {
-    ldlt_pair_of(d, b, t, x, 3u, stride, x_stride);
-}
-static void ldlt_pair_five(const float *d, float *const b[2], float *const t[2], float *x, uint32_t stride,
-                           uint32_t x_stride) {
-    ldlt_pair_of(d, b, t, x, 5u, stride, x_stride);
-}
-
-/* Whether column j was such a pair of a usual size, which is done with then. */
-static int ldlt_pair(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t j, float *v) {
+/* Column j, which has two blocks. */
+static inline void ldlt_take_pair(const tl_block_node *node, const tl_block *block, uint32_t j, float *v, uint32_t n,
+                                  uint32_t stride, uint32_t x_stride) {
     const tl_block *k = block + node[j].first, *target = block + node[k->node].first;
-    uint32_t n = live[j];
-    if (node[j].blocks != 2u || (n != 3u && n != 5u) || live[k[0].node] != n || live[k[1].node] != n) {
-        return 0;
-    }
     while (target->node != k[1].node) {
         target++;
     }
     float *const b[2] = {v + k[0].values * TL_WIDTH, v + k[1].values * TL_WIDTH};
     float *const t[2] = {v + node[k[0].node].diagonal * TL_WIDTH, v + node[k[1].node].diagonal * TL_WIDTH};
-    (n == 3u ? ldlt_pair_three : ldlt_pair_five)(v + node[j].diagonal * TL_WIDTH, b, t, v + target->values * TL_WIDTH,
-                                                 node[j].rows, node[k->node].rows);
+    ldlt_pair_of(v + node[j].diagonal * TL_WIDTH, b, t, v + target->values * TL_WIDTH, n, stride, x_stride);
+}
+
+static void ldlt_pair_three(const tl_block_node *node, const tl_block *block, uint32_t j, float *v) {
+    ldlt_take_pair(node, block, j, v, 3u, node[j].rows, node[block[node[j].first].node].rows);
+}
+static void ldlt_pair_five(const tl_block_node *node, const tl_block *block, uint32_t j, float *v) {
+    ldlt_take_pair(node, block, j, v, 5u, node[j].rows, node[block[node[j].first].node].rows);
+}
+
+/* Whether column j was such a pair of a usual size, which is done with then. */
+static int ldlt_pair(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t j, float *v) {
+    const tl_block *k = block + node[j].first;
+    uint32_t n = live[j];
+    if (node[j].blocks != 2u || (n != 3u && n != 5u) || live[k[0].node] != n || live[k[1].node] != n) {
+        return 0;
+    }
+    (n == 3u ? ldlt_pair_three : ldlt_pair_five)(node, block, j, v);
     return 1;
 }
 
@@ -217,13 +221,35 @@ static void ldlt_raise(const tl_block_node *node, const uint32_t *live, uint32_t
     }
 }
 
-/* Eliminates the first nodes; what is left of others is what they have to do with each other without these. */
-static void ldlt_eliminate(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
-                           float *v) {
+/* Where all nodes have n rows, and all of these are live, n is known: the usual numbers are compiled on their own. */
+#define LDLT_EVEN(n, f, ...)                                                                                           \
+    do {                                                                                                               \
+        switch (n) {                                                                                                   \
+        case 3:                                                                                                        \
+            f(__VA_ARGS__, 3u);                                                                                        \
+            break;                                                                                                     \
+        case 5:                                                                                                        \
+            f(__VA_ARGS__, 5u);                                                                                        \
+            break;                                                                                                     \
+        default:                                                                                                       \
+            f(__VA_ARGS__, 0u);                                                                                        \
+        }                                                                                                              \
+    } while (0)
+
+static inline void ldlt_eliminate_nodes(const tl_block_node *node, const tl_block *block, const uint32_t *live,
+                                        uint32_t nodes, float *v, uint32_t n) {
     for (uint32_t j = 0; j < nodes; j++) {
         float *d = v + node[j].diagonal * TL_WIDTH;
         int several = node[j].blocks > 1u;
-        ldlt_diagonal(d, live[j]);
+        if (n) {
+            ldlt_diagonal_of(d, n);
+        } else {
+            ldlt_diagonal(d, live[j]);
+        }
+        if (n && node[j].blocks == 2u) {
+            ldlt_take_pair(node, block, j, v, n, n, n);
+            continue;
+        }
         if (several && ldlt_pair(node, block, live, j, v)) {
             continue;
         }
@@ -238,10 +264,16 @@ static void ldlt_eliminate(const tl_block_node *node, const tl_block *block, con
     }
 }
 
+/* Eliminates the first nodes; what is left of others is what they have to do with each other without these. */
+static void ldlt_eliminate(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                           float *v, uint32_t even) {
+    LDLT_EVEN(even, ldlt_eliminate_nodes, node, block, live, nodes, v);
+}
+
 static void ldlt_factor(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
-                        float *v) {
+                        float *v, uint32_t even) {
     ldlt_raise(node, live, nodes, v);
-    ldlt_eliminate(node, block, live, nodes, v);
+    ldlt_eliminate(node, block, live, nodes, v, even);
 }
 
 /* x becomes L^-1 x for a node, and y of another less what that is to it by the block l. */
@@ -360,40 +392,68 @@ static void ldlt_pass_back(const float *l, const float *y, float *x, uint32_t ro
     }
 }
 
-/* From the first nodes' right-hand sides to what is left of those of others, and from the others' solution back. */
-static void ldlt_forward_pass(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
-                              float *v) {
+static inline void ldlt_forward_nodes(const tl_block_node *node, const tl_block *block, const uint32_t *live,
+                                      uint32_t nodes, float *v, uint32_t n) {
     for (uint32_t j = 0; j < nodes; j++) {
+        const float *d = v + node[j].diagonal * TL_WIDTH;
         float *x = v + node[j].x * TL_WIDTH;
-        ldlt_forward(v + node[j].diagonal * TL_WIDTH, x, live[j]);
-        for (uint32_t k = 0; k < node[j].blocks; k++) {
-            const tl_block *b = &block[node[j].first + k];
-            ldlt_pass(v + b->values * TL_WIDTH, x, v + node[b->node].x * TL_WIDTH, live[b->node], live[j],
-                      node[j].rows);
+        const tl_block *b = block + node[j].first, *end = b + node[j].blocks;
+        if (n) {
+            ldlt_forward_of(d, x, n);
+        } else {
+            ldlt_forward(d, x, live[j]);
+        }
+        for (; b < end; b++) {
+            const float *l = v + b->values * TL_WIDTH;
+            float *y = v + node[b->node].x * TL_WIDTH;
+            if (n) {
+                ldlt_pass_of(l, x, y, n, n, n);
+            } else {
+                ldlt_pass(l, x, y, live[b->node], live[j], node[j].rows);
+            }
         }
     }
 }
 
-static void ldlt_back_pass(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
-                           float *v) {
+static inline void ldlt_back_nodes(const tl_block_node *node, const tl_block *block, const uint32_t *live,
+                                   uint32_t nodes, float *v, uint32_t n) {
     for (uint32_t j = nodes; j-- > 0;) {
         const float *d = v + node[j].diagonal * TL_WIDTH;
         float *x = v + node[j].x * TL_WIDTH;
-        for (uint32_t i = 0; i < live[j]; i++) {
+        const tl_block *b = block + node[j].first, *end = b + node[j].blocks;
+        for (uint32_t i = 0; i < (n ? n : live[j]); i++) {
             wf_store(x + i * TL_WIDTH, wf_mul(wf_load(x + i * TL_WIDTH), wf_load(d + ldlt_at(i, i) * TL_WIDTH)));
         }
-        for (uint32_t k = 0; k < node[j].blocks; k++) {
-            const tl_block *b = &block[node[j].first + k];
-            ldlt_pass_back(v + b->values * TL_WIDTH, v + node[b->node].x * TL_WIDTH, x, live[b->node], live[j],
-                           node[j].rows);
+        for (; b < end; b++) {
+            const float *l = v + b->values * TL_WIDTH, *y = v + node[b->node].x * TL_WIDTH;
+            if (n) {
+                ldlt_pass_back_of(l, y, x, n, n, n);
+            } else {
+                ldlt_pass_back(l, y, x, live[b->node], live[j], node[j].rows);
+            }
         }
-        ldlt_back(d, x, live[j]);
+        if (n) {
+            ldlt_back_of(d, x, n);
+        } else {
+            ldlt_back(d, x, live[j]);
+        }
     }
 }
 
+/* From the first nodes' right-hand sides to what is left of those of others, and from the others' solution back. */
+static void ldlt_forward_pass(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                              float *v, uint32_t even) {
+    LDLT_EVEN(even, ldlt_forward_nodes, node, block, live, nodes, v);
+}
+
+static void ldlt_back_pass(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
+                           float *v, uint32_t even) {
+    LDLT_EVEN(even, ldlt_back_nodes, node, block, live, nodes, v);
+}
+
 /* The nodes' right-hand sides become the solution. */
-static void ldlt_solve(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes,
-                       float *v) {
-    ldlt_forward_pass(node, block, live, nodes, v);
-    ldlt_back_pass(node, block, live, nodes, v);
+static void ldlt_solve(const tl_block_node *node, const tl_block *block, const uint32_t *live, uint32_t nodes, float *v,
+                       uint32_t even) {
+    ldlt_forward_pass(node, block, live, nodes, v, even);
+    ldlt_back_pass(node, block, live, nodes, v, even);
 }

@@ -58,7 +58,7 @@ typedef struct tl_kernels {
 } tl_kernels;
 
 /* Solves for the x of one linkage's joints in single floats. */
-void tl_linkage_solve_one(const tl_header *h, const tl_linkage *l);
+void tl_linkage_solve_one(const tl_header *h, tl_linkage *l);
 /* Factors and solves, in single floats, what is left of the joints at the cuts of a linkage. */
 void tl_cuts_factor(const tl_header *h, const tl_linkage *l);
 void tl_cuts_solve(const tl_header *h, const tl_linkage *l);

@@ -110,8 +110,12 @@ static void push_back(tl_step *step, const tl_kernels *k, int last) {
     uint32_t contacts = h->groups, joints = h->joint_groups;
     if (step->pushes) {
         step->waits = !last;
-        k->push_contacts(step, 0, contacts);
-        k->press_errors(step, 0, h->presses);
+        if (contacts) {
+            k->push_contacts(step, 0, contacts);
+        }
+        if (h->presses) {
+            k->press_errors(step, 0, h->presses);
+        }
         k->push_joints(step, 0, joints);
         run_linkages(step, k, k->read_errors, k->apply_pushes);
         step->waits = 0;

@@ -222,7 +222,7 @@ void tl_stage_leave(tl_header *h, const void *geometry) {
                 tl_shape_mark_moved(h, s);
             }
         }
-        renew_room(h, body);
+        tl_body_room(h)[body] = tl_body_motion(h)[body]; /* refit renews it: the next step's way counts there */
     }
 }
 

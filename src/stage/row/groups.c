@@ -126,11 +126,16 @@ int tl_joints_alike(const tl_joint_record *a, const tl_joint_record *b) {
 
 /* Passes over one joint at a time need impulses that turn with the bodies, and so rows that do. */
 static uint32_t needs_of(const tl_joint_record *j, uint32_t direct) {
-    uint32_t needs = direct && j->fixed >= 3u ? (uint32_t)TL_JOINT_POINT : 0u;
-    for (uint32_t r = 0; r < 3u && r < j->rows; r++) {
-        needs = j->code[r] == TL_ROW_LINEAR + r + TL_ROW_TYPES * TL_ROW_EQUAL ? needs : 0u;
+    uint32_t plain = j->fixed >= 3u, point = plain & direct, turn = 0;
+    for (uint32_t r = 0; r < j->rows; r++) {
+        uint32_t type = j->code[r] % TL_ROW_TYPES, linear = type < TL_ROW_ANGULAR, distance = type == TL_ROW_DISTANCE;
+        point &= r >= 3u || j->code[r] == TL_ROW_LINEAR + r + TL_ROW_TYPES * TL_ROW_EQUAL;
+        plain &= r >= j->fixed || (r < 3u ? linear : !(linear | distance));
+        turn |= !(linear | distance) && !(type >= TL_ROW_SWING && type < TL_ROW_CONE);
     }
-    return j->rows > (needs ? 3u : 0u) ? needs | TL_JOINT_AXES : needs;
+    uint32_t axes = j->rows > (point ? 3u : 0u);
+    return (point ? (uint32_t)TL_JOINT_POINT : 0u) | (axes ? (uint32_t)TL_JOINT_AXES : 0u) |
+           (turn ? (uint32_t)TL_JOINT_TURN : 0u) | (plain ? (uint32_t)TL_JOINT_PLAIN : 0u);
 }
 
 tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint32_t direct) {
@@ -140,7 +145,9 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint
     }
     tl_joint_group *g = &tl_joint_group_pool(h)[h->joint_groups++];
     memset(g, 0, offsetof(tl_joint_group, k));
-    memset(g->x, 0, sizeof g->x);
+    for (uint32_t r = 0; r < 3u; r++) { /* the force of lanes without a joint */
+        memset(g->x[r], 0, sizeof g->x[r]);
+    }
     for (uint32_t k = 0; k < TL_LANES; k++) {
         g->qa[3][k] = g->qb[3][k] = 1.0f;
     }
@@ -154,7 +161,13 @@ tl_joint_group *tl_joint_group_open(tl_header *h, const tl_joint_record *j, uint
         }
     }
     for (uint32_t r = 0; r < j->rows; r++) {
-        memset(tl_joint_row_pool(h)[g->first_row + r].lower, 0, sizeof(tl_joint_row) - offsetof(tl_joint_row, lower));
+        tl_joint_row *row = &tl_joint_row_pool(h)[g->first_row + r];
+        if (r < j->fixed) { /* an equality has no more */
+            memset(row->lower, 0, sizeof row->lower);
+            memset(row->impulse, 0, sizeof row->impulse);
+        } else {
+            memset(row->lower, 0, sizeof *row - offsetof(tl_joint_row, lower));
+        }
     }
     h->joint_rows += j->rows;
     return g;

@@ -17,7 +17,7 @@ typedef struct joint_bodies {
     v8 curve;      /* m/s: of anchor b against anchor a */
     v8 pa, pb;     /* the frames' origins in the world */
     v8 a[3], b[3]; /* the frames' axes in the world */
-    q8 turn;       /* of frame b in frame a, w >= 0 */
+    q8 turn;       /* of frame b in frame a, w >= 0, if some row tells it */
 } joint_bodies;
 
 static inline void axes_of(q8 q, v8 out[3]) {
@@ -127,6 +127,10 @@ static void load_joint_frames(const tl_joint_group *g, joint_bodies *c) {
     q8 fb =
         q8_mul(c->qb, q8_of(tl_f8_load(g->qb[0]), tl_f8_load(g->qb[1]), tl_f8_load(g->qb[2]), tl_f8_load(g->qb[3])));
     axes_of(fb, c->b);
+    c->turn = fb;
+    if (!(g->needs & TL_JOINT_TURN)) {
+        return;
+    }
     q8 t = q8_mul(q8_conjugate(fa), fb);
     tl_m8 flip = tl_f8_lt(t.w, tl_f8_zero());
     c->turn = q8_of(tl_f8_select(flip, tl_f8_neg(t.x), t.x), tl_f8_select(flip, tl_f8_neg(t.y), t.y),
@@ -270,71 +274,136 @@ static void make_joint_row(const joint_bodies *c, tl_joint_row *row, uint32_t co
 /* A pivot below this share of its diagonal entry stands for rows that say the same thing twice. */
 #define LEAST_PIVOT 1e-6f
 
+/* What the equalities of a group are along. The usual forms, with the usual numbers of rows, are compiled on their own:
+ * a point, held along the axes of the world or of frame a, and then angles. */
+enum { FORM_ANY, FORM_WORLD, FORM_FRAME };
+#define FORM_OF(rows, form) ((rows)*4u + (form))
+
+static inline uint32_t form_of(const tl_joint_group *g, uint32_t rows) {
+    uint32_t form = g->needs & TL_JOINT_POINT ? FORM_WORLD : FORM_FRAME;
+    return g->needs & TL_JOINT_PLAIN && rows == g->fixed ? FORM_OF(rows, form) : FORM_ANY;
+}
+
+/* What a row is along: nothing but an angle, a direction, or an axis of the world, which is ROW_AXIS and its number. */
+enum { ROW_ANGULAR = 0, ROW_LINEAR = 1, ROW_AXIS = 2 };
+
+static inline int row_kind(const tl_joint_group *g, uint32_t k) {
+    if (k < 3u && (g->needs & TL_JOINT_POINT)) {
+        return ROW_AXIS + (int)k;
+    }
+    return is_linear_row(g->code[k]) ? ROW_LINEAR : ROW_ANGULAR;
+}
+
+/* Calls f(..., form, rows). */
+#define IN_FORM(g, f, ...)                                                                                             \
+    do {                                                                                                               \
+        switch (form_of(g, (g)->fixed)) {                                                                              \
+        case FORM_OF(3u, FORM_WORLD):                                                                                  \
+            f(__VA_ARGS__, FORM_WORLD, 3u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(3u, FORM_FRAME):                                                                                  \
+            f(__VA_ARGS__, FORM_FRAME, 3u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(5u, FORM_WORLD):                                                                                  \
+            f(__VA_ARGS__, FORM_WORLD, 5u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(5u, FORM_FRAME):                                                                                  \
+            f(__VA_ARGS__, FORM_FRAME, 5u);                                                                            \
+            break;                                                                                                     \
+        default:                                                                                                       \
+            f(__VA_ARGS__, FORM_ANY, (g)->fixed);                                                                      \
+        }                                                                                                              \
+    } while (0)
+
+/* The same for linked joints, whose points are held along the axes of the world. */
+#define IN_LINKED_FORM(g, rows, f, ...)                                                                                \
+    do {                                                                                                               \
+        switch (form_of(g, rows)) {                                                                                    \
+        case FORM_OF(3u, FORM_WORLD):                                                                                  \
+            f(__VA_ARGS__, FORM_WORLD, 3u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(5u, FORM_WORLD):                                                                                  \
+            f(__VA_ARGS__, FORM_WORLD, 5u);                                                                            \
+            break;                                                                                                     \
+        default:                                                                                                       \
+            f(__VA_ARGS__, FORM_ANY, rows);                                                                            \
+        }                                                                                                              \
+    } while (0)
+
+TL_INLINE int kind_in(uint32_t form, const tl_joint_group *g, uint32_t k) {
+    if (form == FORM_ANY) {
+        return row_kind(g, k);
+    }
+    return k >= 3u ? ROW_ANGULAR : form == FORM_WORLD ? ROW_AXIS + (int)k : ROW_LINEAR;
+}
+
 /* The first i + 1 entries of row i of a joint's matrix. */
-TL_INLINE void matrix_row(const joint_bodies *c, const tl_joint_group *g, const tl_joint_row *rows, uint32_t i,
-                          tl_f8 *out) {
+TL_INLINE void matrix_row(const joint_bodies *c, const tl_joint_group *g, const tl_joint_row *rows, uint32_t form,
+                          uint32_t i, tl_f8 *out) {
     tl_f8 linear = tl_f8_add(c->ma, c->mb);
-    int is_linear = is_linear_row(g->code[i]), is_point = (g->needs & TL_JOINT_POINT) && i < 3u;
+    int kind = kind_in(form, g, i);
+    TL_UNROLL
     for (uint32_t j = 0; j <= i; j++) {
         out[j] = tl_f8_zero();
     }
     if (c->sides & TL_JOINT_A) {
         v8 ja = v8_scale(v8_load(rows[i].ja[0]), c->ta);
+        TL_UNROLL
         for (uint32_t j = 0; j <= i; j++) {
             out[j] = v8_dot(ja, v8_load(rows[j].ja[0]));
         }
     }
     if (c->sides & TL_JOINT_B) {
         v8 jb = v8_scale(v8_load(rows[i].jb[0]), c->tb);
+        TL_UNROLL
         for (uint32_t j = 0; j <= i; j++) {
             out[j] = tl_f8_add(out[j], v8_dot(jb, v8_load(rows[j].jb[0])));
         }
     }
+    TL_UNROLL
     for (uint32_t j = 0; j <= i; j++) {
-        if (is_point) {
+        if (kind >= ROW_AXIS) {
             out[j] = i == j ? tl_f8_add(out[j], linear) : out[j];
-        } else if (is_linear && is_linear_row(g->code[j])) {
+        } else if (kind == ROW_LINEAR && kind_in(form, g, j) != ROW_ANGULAR) {
             out[j] = tl_f8_mad(out[j], linear, v8_dot(v8_load(rows[i].n[0]), v8_load(rows[j].n[0])));
         }
     }
 }
 
-TL_INLINE void fill_matrix_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t n) {
-    for (uint32_t i = 0; i < n; i++) {
+TL_INLINE void fill_matrix_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t form,
+                              uint32_t n) {
+    TL_UNROLL
+    for (uint32_t i = 0; i < n && i < TL_LINK_ROWS; i++) {
         tl_f8 row[6];
-        matrix_row(c, g, rows, i, row);
+        matrix_row(c, g, rows, form, i, row);
+        TL_UNROLL
         for (uint32_t j = 0; j <= i; j++) {
             tl_f8_store(g->matrix[i * (i + 1u) / 2u + j], row[j]);
         }
     }
 }
 
-/* The usual numbers are compiled on their own. */
 static void fill_matrix(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
-    switch (g->linked) {
-    case 3:
-        fill_matrix_of(c, g, rows, 3u);
-        break;
-    case 5:
-        fill_matrix_of(c, g, rows, 5u);
-        break;
-    default:
-        fill_matrix_of(c, g, rows, g->linked);
-    }
+    IN_LINKED_FORM(g, g->linked, fill_matrix_of, c, g, rows);
 }
 
 /* L D L^T of the equalities' matrix, row by row; the diagonal holds 1 / D (Golub and Van Loan, 4.1.2). */
-TL_INLINE void factor_equalities_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t n) {
+TL_INLINE void factor_equalities_of(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows, uint32_t form,
+                                    uint32_t n) {
     tl_f8 l[21], d[6];
-    for (uint32_t i = 0; i < n; i++) {
+    TL_UNROLL
+    for (uint32_t i = 0; i < n && i < TL_LINK_ROWS; i++) {
         tl_f8 row[6]; /* of the matrix, then of L D */
-        matrix_row(c, g, rows, i, row);
+        matrix_row(c, g, rows, form, i, row);
+        TL_UNROLL
         for (uint32_t j = 0; j < i; j++) {
+            TL_UNROLL
             for (uint32_t m = 0; m < j; m++) {
                 row[j] = tl_f8_sub(row[j], tl_f8_mul(row[m], l[j * (j + 1u) / 2u + m]));
             }
         }
         tl_f8 k = row[i];
+        TL_UNROLL
         for (uint32_t j = 0; j < i; j++) {
             l[i * (i + 1u) / 2u + j] = tl_f8_mul(row[j], d[j]);
             k = tl_f8_sub(k, tl_f8_mul(row[j], l[i * (i + 1u) / 2u + j]));
@@ -342,23 +411,14 @@ TL_INLINE void factor_equalities_of(const joint_bodies *c, tl_joint_group *g, co
         tl_m8 ok = tl_f8_gt(k, tl_f8_mul(row[i], tl_f8_set1(LEAST_PIVOT)));
         l[i * (i + 1u) / 2u + i] = d[i] = tl_f8_and_mask(ok, inverse_or_zero(k));
     }
+    TL_UNROLL
     for (uint32_t i = 0; i < n * (n + 1u) / 2u; i++) {
         tl_f8_store(g->matrix[i], l[i]);
     }
 }
 
-/* The usual numbers are compiled on their own. */
 static void factor_equalities(const joint_bodies *c, tl_joint_group *g, const tl_joint_row *rows) {
-    switch (g->fixed) {
-    case 3:
-        factor_equalities_of(c, g, rows, 3u);
-        break;
-    case 5:
-        factor_equalities_of(c, g, rows, 5u);
-        break;
-    default:
-        factor_equalities_of(c, g, rows, g->fixed);
-    }
+    IN_FORM(g, factor_equalities_of, c, g, rows);
 }
 
 static void make_joint_rows(const tl_step *step, tl_joint_group *g) {

@@ -62,9 +62,9 @@ static uint32_t gather(tl_header *h, uint32_t joint, uint32_t first, uint32_t *e
     return count;
 }
 
+/* Which end a body is of the linkage that was gathered with its joints: those that impulses move are numbered. */
 static uint32_t end_of(const tl_header *h, uint32_t body) {
-    uint32_t row = free_row(h, body);
-    return row ? tl_linkage_rows(h)[row] - 1u : TL_BLOCK_FREE;
+    return tl_linkage_rows(h)[tl_body_row(h)[body]] - 1u; /* 0 - 1: TL_BLOCK_FREE */
 }
 
 /* Whether the joints from `first` on in linkage_order are tied as those of a shape are. */
@@ -183,7 +183,7 @@ static float error_of(const tl_header *h, const tl_joint_record *j, talus_vec3 d
 
 /* m: how far a body that impulses move reaches, or is held from; 0 of one that they do not. */
 static float arm_of(const tl_header *h, uint32_t body, talus_vec3 held) {
-    return free_row(h, body) ? tl_max(tl_body_inertias(h)[body].reach, tl_length(held)) : 0.0f;
+    return end_of(h, body) != TL_BLOCK_FREE ? tl_max(tl_body_inertias(h)[body].reach, tl_length(held)) : 0.0f;
 }
 
 static int is_wild(const tl_step *step, const uint32_t *order, uint32_t count) {
@@ -404,8 +404,9 @@ void tl_linkages_note_exact(tl_header *h) {
 /* --- stiffness -------------------------------------------------------------------------------- */
 
 static void set_turns(tl_header *h, uint32_t row, float turns) {
-    if (tl_row_velocity(h)[row].f[7] > 0.0f) {
-        tl_row_velocity(h)[row].f[7] = tl_row_before(h)[row].f[7] = tl_row_push(h)[row].f[7] = turns;
+    float *now = &tl_row_velocity(h)[row].f[7];
+    if (*now > 0.0f && *now != turns) {
+        *now = tl_row_before(h)[row].f[7] = tl_row_push(h)[row].f[7] = turns;
     }
 }
 
@@ -422,9 +423,15 @@ void tl_stage_stiffness(tl_step *step) {
     }
     memset(stiffness, 0, step->rows * sizeof(float));
     for (uint32_t i = 0; i < h->joint_groups; i++) {
-        for (uint32_t k = 0; k < groups[i].lanes && groups[i].linked; k++) {
-            stiffness[groups[i].a[k]] += groups[i].pull[k] * groups[i].give[0][k] * step->sub;
-            stiffness[groups[i].b[k]] += groups[i].pull[k] * groups[i].give[1][k] * step->sub;
+        const tl_joint_group *g = &groups[i];
+        const uint32_t lanes = g->linked ? g->lanes : 0u;
+        float of_a[TL_LANES], of_b[TL_LANES], sub = step->sub;
+        for (uint32_t k = 0; k < TL_LANES && lanes; k++) {
+            of_a[k] = g->pull[k] * g->give[0][k] * sub, of_b[k] = g->pull[k] * g->give[1][k] * sub;
+        }
+        for (uint32_t k = 0; k < lanes; k++) {
+            stiffness[g->a[k]] += of_a[k];
+            stiffness[g->b[k]] += of_b[k];
         }
     }
     step->stiff = 0;

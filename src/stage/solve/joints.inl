@@ -14,16 +14,6 @@
 #define LOOSE_TURN 1.5708f
 #define LOOSE_DAMPING 2.0f
 
-/* What a row is along: nothing but an angle, a direction, or an axis of the world, which is ROW_AXIS and its number. */
-enum { ROW_ANGULAR = 0, ROW_LINEAR = 1, ROW_AXIS = 2 };
-
-static inline int row_kind(const tl_joint_group *g, uint32_t k) {
-    if (k < 3u && (g->needs & TL_JOINT_POINT)) {
-        return ROW_AXIS + (int)k;
-    }
-    return is_linear_row(g->code[k]) ? ROW_LINEAR : ROW_ANGULAR;
-}
-
 /* As load_pair and store_pair, but for a side on which nothing moves. */
 TL_INLINE void load_joint_pair(const float *velocities, const tl_joint_group *g, pair_velocity *p) {
     tl_f8 r[8];
@@ -157,14 +147,18 @@ static void solve_range(const tl_step *step, pair_velocity *p, tl_joint_row *row
 
 /* x becomes the impulses that take n equalities' speeds -x to nothing. */
 TL_INLINE void solve_factored(const tl_joint_group *g, tl_f8 x[6], uint32_t n) {
-    for (uint32_t i = 0; i < n; i++) {
+    TL_UNROLL
+    for (uint32_t i = 0; i < n && i < TL_LINK_ROWS; i++) {
+        TL_UNROLL
         for (uint32_t j = 0; j < i; j++) {
             x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->matrix[i * (i + 1u) / 2u + j]), x[j]));
         }
     }
-    for (uint32_t i = n; i-- > 0;) {
+    TL_UNROLL
+    for (uint32_t i = n < TL_LINK_ROWS ? n : TL_LINK_ROWS; i-- > 0;) {
         x[i] = tl_f8_mul(x[i], tl_f8_load(g->matrix[i * (i + 1u) / 2u + i]));
-        for (uint32_t j = i + 1u; j < n; j++) {
+        TL_UNROLL
+        for (uint32_t j = i + 1u; j < n && j < TL_LINK_ROWS; j++) {
             x[i] = tl_f8_sub(x[i], tl_f8_mul(tl_f8_load(g->matrix[j * (j + 1u) / 2u + i]), x[j]));
         }
     }
@@ -186,73 +180,67 @@ static inline tl_f8 loose_speed(const tl_step *step, const tl_joint_row *row) {
 }
 
 TL_INLINE void solve_equalities_of(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
-                                   int before_move, uint32_t n) {
+                                   int before_move, uint32_t form, uint32_t n) {
     tl_f8 x[6];
     int keep = !counts_for_last(step, g), loose = before_move && g->gives;
-    for (uint32_t i = 0; i < n; i++) {
-        tl_f8 speed = joint_speed(p, &rows[i], row_kind(g, i));
+    TL_UNROLL
+    for (uint32_t i = 0; i < n && i < TL_LINK_ROWS; i++) {
+        tl_f8 speed = joint_speed(p, &rows[i], kind_in(form, g, i));
         speed = before_move ? tl_f8_add(speed, tl_f8_load(rows[i].curve)) : speed;
         x[i] = tl_f8_neg(loose ? tl_f8_add(speed, loose_speed(step, &rows[i])) : speed);
     }
     solve_factored(g, x, n);
-    for (uint32_t i = 0; i < n; i++) {
+    TL_UNROLL
+    for (uint32_t i = 0; i < n && i < TL_LINK_ROWS; i++) {
         x[i] = loose ? loosened(&rows[i], x[i]) : x[i];
         if (keep) {
             tl_f8_store(rows[i].impulse, tl_f8_add(tl_f8_load(rows[i].impulse), x[i]));
         }
-        joint_apply(p, &rows[i], row_kind(g, i), x[i]);
+        joint_apply(p, &rows[i], kind_in(form, g, i), x[i]);
     }
 }
 
-/* The usual numbers are compiled on their own. */
 static void solve_equalities(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
                              int before_move) {
-    switch (g->fixed) {
-    case 3:
-        solve_equalities_of(step, g, rows, p, before_move, 3u);
-        break;
-    case 5:
-        solve_equalities_of(step, g, rows, p, before_move, 5u);
-        break;
-    default:
-        solve_equalities_of(step, g, rows, p, before_move, g->fixed);
-    }
+    IN_FORM(g, solve_equalities_of, step, g, rows, p, before_move);
 }
 
-TL_INLINE void push_equalities_of(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, uint32_t n) {
+TL_INLINE void push_equalities_of(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, uint32_t form,
+                                  uint32_t n) {
     tl_f8 x[6];
-    for (uint32_t k = 0; k < n; k++) {
+    TL_UNROLL
+    for (uint32_t k = 0; k < n && k < TL_LINK_ROWS; k++) {
         tl_f8 error = tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower));
-        error = tl_f8_add(error, joint_speed(p, &rows[k], row_kind(g, k)));
+        error = tl_f8_add(error, joint_speed(p, &rows[k], kind_in(form, g, k)));
         x[k] = tl_f8_neg(error);
     }
     solve_factored(g, x, n);
-    for (uint32_t k = 0; k < n; k++) {
-        joint_apply(p, &rows[k], row_kind(g, k), x[k]);
+    TL_UNROLL
+    for (uint32_t k = 0; k < n && k < TL_LINK_ROWS; k++) {
+        joint_apply(p, &rows[k], kind_in(form, g, k), x[k]);
     }
 }
 
 static void push_equalities(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p) {
-    switch (g->fixed) {
-    case 3:
-        push_equalities_of(g, rows, p, 3u);
-        break;
-    case 5:
-        push_equalities_of(g, rows, p, 5u);
-        break;
-    default:
-        push_equalities_of(g, rows, p, g->fixed);
-    }
+    IN_FORM(g, push_equalities_of, g, rows, p);
 }
 
 /* Whether the errors of an exact group, whose bodies nothing else displaces, may wait. */
-static int is_near(const tl_joint_group *g, const tl_joint_row *rows) {
+TL_INLINE void near_of_form(const tl_joint_group *g, const tl_joint_row *rows, int *near, uint32_t form, uint32_t n) {
     tl_m8 away = tl_m8_zero();
-    for (uint32_t k = 0; k < g->fixed; k++) {
+    TL_UNROLL
+    for (uint32_t k = 0; k < n && k < TL_LINK_ROWS; k++) {
         tl_f8 error = tl_f8_abs(tl_f8_sub(tl_f8_load(rows[k].error), tl_f8_load(rows[k].lower)));
-        away = tl_m8_or(away, tl_f8_gt(error, tl_f8_set1(is_linear_row(g->code[k]) ? NEAR_AWAY : NEAR_TURNED)));
+        float most = kind_in(form, g, k) == ROW_ANGULAR ? NEAR_TURNED : NEAR_AWAY;
+        away = tl_m8_or(away, tl_f8_gt(error, tl_f8_set1(most)));
     }
-    return !tl_m8_any(away);
+    *near = !tl_m8_any(away);
+}
+
+static int is_near(const tl_joint_group *g, const tl_joint_row *rows) {
+    int near = 0;
+    IN_FORM(g, near_of_form, g, rows, &near);
+    return near;
 }
 
 /* Displacements that take back the errors and what is beyond hard limits. */
@@ -312,11 +300,21 @@ static void run_joints(const tl_step *step, uint32_t first, uint32_t last, int b
 static void solve_joints(const tl_step *step, uint32_t first, uint32_t last) { run_joints(step, first, last, 1); }
 static void relax_joints(const tl_step *step, uint32_t first, uint32_t last) { run_joints(step, first, last, 0); }
 
-static void apply_all(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, float sign, int kinds) {
-    for (uint32_t k = 0; k < g->rows; k++) {
+/* The impulses of the first rows, of those along the world's axes what turns bodies alone where `turn`. */
+TL_INLINE void apply_rows(const tl_joint_row *rows, const tl_joint_group *g, pair_velocity *p, float sign, int turn,
+                          uint32_t form, uint32_t n) {
+    TL_UNROLL
+    for (uint32_t k = 0; k < n && k < TL_LINK_ROWS; k++) {
         tl_f8 impulse = tl_f8_mul(tl_f8_set1(sign), tl_f8_load(rows[k].impulse));
-        int kind = row_kind(g, k);
-        joint_apply(p, &rows[k], kind < kinds ? kind : ROW_ANGULAR, impulse);
+        int kind = kind_in(form, g, k);
+        joint_apply(p, &rows[k], turn && kind >= ROW_AXIS ? ROW_ANGULAR : kind, impulse);
+    }
+}
+
+TL_INLINE void apply_all(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, float sign, int turn) {
+    IN_LINKED_FORM(g, g->fixed, apply_rows, rows, g, p, sign, turn);
+    for (uint32_t k = g->fixed; k < g->rows; k++) {
+        joint_apply(p, &rows[k], row_kind(g, k), tl_f8_mul(tl_f8_set1(sign), tl_f8_load(rows[k].impulse)));
     }
 }
 
@@ -329,7 +327,7 @@ static void begin_joints(const tl_step *step, uint32_t first, uint32_t last) {
         pair_velocity p;
         make_joint_rows(step, g);
         load_joint_pair(velocities, g, &p);
-        apply_all(g, rows, &p, 1.0f, ROW_AXIS + 3);
+        apply_all(g, rows, &p, 1.0f, 0);
         store_joint_pair(velocities, g, &p);
     }
 }
@@ -348,10 +346,10 @@ static void turn_joints(const tl_step *step, uint32_t first, uint32_t last) {
         }
         load_joint_pair(befores, g, &p);
         p.ta = tl_f8_load(g->turns[0]), p.tb = tl_f8_load(g->turns[1]);
-        apply_all(g, rows, &p, 1.0f, ROW_AXIS);
+        apply_all(g, rows, &p, 1.0f, 1);
         make_joint_rows(step, g);
         p.ta = tl_f8_load(g->turns[0]), p.tb = tl_f8_load(g->turns[1]);
-        apply_all(g, rows, &p, -1.0f, ROW_AXIS);
+        apply_all(g, rows, &p, -1.0f, 1);
         store_joint_pair(befores, g, &p);
     }
 }

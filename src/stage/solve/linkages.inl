@@ -74,6 +74,54 @@ static void link_share(link_lane row, link_lane column, uint32_t rows, uint32_t 
     }
 }
 
+/* The same where both hold a point along the world's axes and then angles, n rows that all hold. */
+static inline void share_even(link_lane row, link_lane column, uint32_t s, uint32_t t, int first, float *v,
+                              uint32_t n) {
+    wf sign = wf_set1(s == t ? 1.0f : -1.0f), zero = wf_set1(0.0f);
+    wf mass = wf_mul(sign, wf_load(row.g->mass[s] + row.lane)), none = wf_mul(mass, zero);
+    wf turns = wf_mul(sign, wf_load(row.g->turns[s] + row.lane));
+    w3 ju[TL_LINK_ROWS];
+    TL_UNROLL
+    for (uint32_t c = 0; c < n && c < TL_LINK_ROWS; c++) {
+        ju[c] = w3_load((t ? column.rows[c].jb[0] : column.rows[c].ja[0]) + column.lane);
+    }
+    TL_UNROLL
+    for (uint32_t i = 0; i < n && i < TL_LINK_ROWS; i++) {
+        w3 ji = w3_load((s ? row.rows[i].jb[0] : row.rows[i].ja[0]) + row.lane);
+        TL_UNROLL
+        for (uint32_t c = 0; c < n && c < TL_LINK_ROWS; c++, v += TL_WIDTH) {
+            wf sum = wf_mad(first ? zero : wf_load(v), turns, w3_dot(ji, ju[c]));
+            wf_store(v, i < 3u && c < 3u ? wf_add(sum, i == c ? mass : none) : sum);
+        }
+    }
+}
+
+static inline void block_even(const tl_block *b, link_lane row, link_lane column, float *v, uint32_t n) {
+    int first = 1;
+    for (uint32_t i = 0; i < 4u; i++) {
+        if (b->shares >> i & 1u) {
+            share_even(row, column, i / 2u, i % 2u, first, v, n);
+            first = 0;
+        }
+    }
+    for (uint32_t i = 0; first && i < n * n; i++) {
+        wf_store(v + i * TL_WIDTH, wf_set1(0.0f));
+    }
+}
+
+static inline void diagonal_even(link_lane k, float *d, uint32_t n) {
+    wf soft = wf_load(k.g->soft + k.lane);
+    TL_UNROLL
+    for (uint32_t i = 0; i < n && i < TL_LINK_ROWS; i++) {
+        TL_UNROLL
+        for (uint32_t j = 0; j < i; j++) {
+            wf_store(d + ldlt_at(i, j) * TL_WIDTH, wf_load(k.g->matrix[ldlt_at(i, j)] + k.lane));
+        }
+        wf a = wf_load(k.g->matrix[ldlt_at(i, i)] + k.lane);
+        wf_store(d + ldlt_at(i, i) * TL_WIDTH, wf_mad(a, a, soft));
+    }
+}
+
 /* How many of a joint's rows are to be looked at: up to the last that holds. */
 static inline uint32_t live_rows(link_lane k) {
     uint32_t live = k.g->linked;
@@ -93,22 +141,45 @@ static void link_block(const tl_block *b, link_lane row, link_lane column, uint3
     }
 }
 
-static void link_factor(const tl_header *h, const tl_linkage *l, float *v) {
+/* The rows of a joint if they hold a point along the world's axes and then angles, and nothing else; else 0. */
+static inline uint32_t even_rows(const tl_joint_group *g) {
+    const uint32_t form = TL_JOINT_POINT | TL_JOINT_PLAIN;
+    return (g->needs & form) == form && g->linked == g->fixed ? g->fixed : 0u;
+}
+
+TL_INLINE void link_matrix(const tl_header *h, const tl_linkage *l, const uint32_t *live, float *v, uint32_t n) {
     const tl_block_node *node = tl_linkage_nodes(h) + l->first_node;
     const tl_block *block = tl_linkage_blocks(h);
-    uint32_t *live = tl_linkage_live(h) + l->first_place;
-    for (uint32_t j = 0; j < l->nodes; j++) {
-        live[j] = live_rows(link_of(h, l, j));
-    }
     for (uint32_t j = 0; j < l->nodes; j++) {
         link_lane column = link_of(h, l, j);
-        link_diagonal(column, live[j], v + node[j].diagonal * TL_WIDTH);
+        float *d = v + node[j].diagonal * TL_WIDTH;
+        if (n) {
+            diagonal_even(column, d, n);
+        } else {
+            link_diagonal(column, live[j], d);
+        }
         for (uint32_t k = 0; k < node[j].blocks; k++) {
             const tl_block *b = &block[node[j].first + k];
-            link_block(b, link_of(h, l, b->node), column, live[b->node], live[j], v + b->values * TL_WIDTH);
+            link_lane row = link_of(h, l, b->node);
+            if (n) {
+                block_even(b, row, column, v + b->values * TL_WIDTH, n);
+            } else {
+                link_block(b, row, column, live[b->node], live[j], v + b->values * TL_WIDTH);
+            }
         }
     }
-    ldlt_factor(node, block, live, l->nodes, v);
+}
+
+static void link_factor(const tl_header *h, tl_linkage *l, float *v) {
+    const tl_block_node *node = tl_linkage_nodes(h) + l->first_node;
+    uint32_t *live = tl_linkage_live(h) + l->first_place;
+    l->even = node->rows;
+    for (uint32_t j = 0; j < l->nodes; j++) {
+        live[j] = live_rows(link_of(h, l, j));
+        l->even = even_rows(link_of(h, l, j).g) == node->rows ? l->even : 0u;
+    }
+    LDLT_EVEN(l->even, link_matrix, h, l, live, v);
+    ldlt_factor(node, tl_linkage_blocks(h), live, l->nodes, v, l->even);
 }
 
 /* Whether a linkage's rows or what holds of them changed since it was factored; from now on they did not. */
@@ -125,7 +196,7 @@ static int link_is_stale(const tl_header *h, const tl_linkage *l) {
 }
 
 /* The x of a linkage's joints becomes the impulses that meet it. */
-static void link_solve(const tl_header *h, const tl_linkage *l) {
+static void link_solve(const tl_header *h, tl_linkage *l) {
     const tl_block_node *node = tl_linkage_nodes(h) + l->first_node;
     const uint32_t *live = tl_linkage_live(h) + l->first_place;
     float *v = tl_linkage_values(h) + l->values;
@@ -138,7 +209,7 @@ static void link_solve(const tl_header *h, const tl_linkage *l) {
             wf_store(v + (node[j].x + i) * TL_WIDTH, wf_load(k.g->x[i] + k.lane));
         }
     }
-    ldlt_solve(node, tl_linkage_blocks(h), live, l->nodes, v);
+    ldlt_solve(node, tl_linkage_blocks(h), live, l->nodes, v, l->even);
     for (uint32_t j = 0; j < l->nodes; j++) {
         uint32_t place = tl_linkage_places(h)[l->first_place + j];
         tl_joint_group *g = &tl_joint_group_pool(h)[place / TL_LANES];

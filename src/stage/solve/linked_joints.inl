@@ -14,10 +14,10 @@ static inline tl_m8 is_hard(const tl_joint_row *row) {
 }
 
 /* What a row has to meet: its speed against the one it seeks, and the give of the raised diagonal. */
-static inline tl_f8 speed_to_meet(const tl_joint_group *g, const tl_joint_row *rows, uint32_t k,
-                                  const pair_velocity *p) {
+TL_INLINE tl_f8 speed_to_meet(const tl_joint_group *g, const tl_joint_row *rows, uint32_t k, int kind,
+                              const pair_velocity *p) {
     tl_f8 give = tl_f8_mul(tl_f8_set1(TL_BLOCK_RAISE), tl_f8_load(g->matrix[k * (k + 1u) / 2u + k]));
-    return tl_f8_mad(joint_speed(p, &rows[k], row_kind(g, k)), give, tl_f8_load(rows[k].impulse));
+    return tl_f8_mad(joint_speed(p, &rows[k], kind), give, tl_f8_load(rows[k].impulse));
 }
 
 /* m or rad: how far a row is off, beyond what its impulse stretches it by. */
@@ -43,7 +43,7 @@ static inline void read_range(const tl_step *step, tl_joint_group *g, const tl_j
     tl_m8 holds = tl_m8_and(is_hard(&rows[k]), tl_f8_gt(tl_f8_abs(tl_f8_load(rows[k].impulse)), zero));
     tl_f8 bias = tl_f8_mul(tl_f8_max(gap, zero), tl_f8_set1(step->inverse_sub));
     set_active(g, k, holds);
-    tl_f8 speed = tl_f8_mad(speed_to_meet(g, rows, k, p), sign, bias);
+    tl_f8 speed = tl_f8_mad(speed_to_meet(g, rows, k, row_kind(g, k), p), sign, bias);
     tl_f8_store(g->x[k], tl_f8_and_mask(holds, tl_f8_neg(speed)));
 }
 
@@ -60,6 +60,16 @@ static inline tl_f8 speed_before_move(const tl_step *step, const tl_joint_group 
     return speed;
 }
 
+TL_INLINE void read_speeds(const tl_step *step, tl_joint_group *g, const tl_joint_row *rows, const pair_velocity *p,
+                           uint32_t form, uint32_t n) {
+    TL_UNROLL
+    for (uint32_t k = 0; k < n && k < TL_LINK_ROWS; k++) {
+        tl_f8 speed = speed_to_meet(g, rows, k, kind_in(form, g, k), p);
+        speed = step->before_move ? speed_before_move(step, g, rows, k, speed) : speed;
+        tl_f8_store(g->x[k], tl_f8_neg(speed));
+    }
+}
+
 /* Speeds to be taken away. */
 static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
@@ -70,11 +80,7 @@ static void read_velocities(const tl_step *step, uint32_t first, uint32_t last) 
         }
         pair_velocity p;
         load_linked_pair(tl_row_velocity(step->h)->f, g, &p);
-        for (uint32_t k = 0; k < g->fixed; k++) {
-            tl_f8 speed = speed_to_meet(g, rows, k, &p);
-            speed = step->before_move ? speed_before_move(step, g, rows, k, speed) : speed;
-            tl_f8_store(g->x[k], tl_f8_neg(speed));
-        }
+        IN_LINKED_FORM(g, g->fixed, read_speeds, step, g, rows, &p);
         for (uint32_t k = g->fixed; k < g->linked; k++) {
             read_range(step, g, rows, k, &p);
         }
@@ -97,6 +103,18 @@ static inline tl_m8 push_range(tl_joint_group *g, const tl_joint_row *rows, uint
     return out;
 }
 
+TL_INLINE void read_equalities(const tl_step *step, tl_joint_group *g, const tl_joint_row *rows, const pair_velocity *p,
+                               tl_m8 *far, uint32_t form, uint32_t n) {
+    TL_UNROLL
+    for (uint32_t k = 0; k < n && k < TL_LINK_ROWS; k++) {
+        int kind = kind_in(form, g, k);
+        tl_f8 error = error_to_meet(step, g, rows, k);
+        error = tl_f8_add(error, joint_speed(p, &rows[k], kind));
+        tl_f8_store(g->x[k], tl_f8_neg(error));
+        *far = tl_m8_or(*far, tl_f8_gt(tl_f8_abs(error), tl_f8_set1(kind == ROW_ANGULAR ? FAR_TURNED : FAR_AWAY)));
+    }
+}
+
 /* Errors to be taken away. */
 static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
@@ -108,18 +126,28 @@ static void read_errors(const tl_step *step, uint32_t first, uint32_t last) {
         pair_velocity p;
         load_linked_pair(tl_row_push(step->h)->f, g, &p);
         tl_m8 far = tl_m8_zero();
-        for (uint32_t k = 0; k < g->fixed; k++) {
-            tl_f8 error = error_to_meet(step, g, rows, k);
-            error = tl_f8_add(error, joint_speed(&p, &rows[k], row_kind(g, k)));
-            tl_f8_store(g->x[k], tl_f8_neg(error));
-            tl_f8 most = tl_f8_set1(is_linear_row(g->code[k]) ? FAR_AWAY : FAR_TURNED);
-            far = tl_m8_or(far, tl_f8_gt(tl_f8_abs(error), most));
-        }
+        IN_LINKED_FORM(g, g->fixed, read_equalities, step, g, rows, &p, &far);
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(far) ? (uint32_t)TL_FAR_NOW : 0u);
         g->far |= step->waits && g->exact && is_near(g, rows) ? (uint32_t)TL_FAR_NOT : 0u;
         for (uint32_t k = g->fixed; k < g->linked; k++) {
             far = tl_m8_or(far, push_range(g, rows, k, &p));
         }
+    }
+}
+
+/* Adds the pull of equalities, the impulse along the rows that are along something. */
+TL_INLINE void apply_equalities(const tl_step *step, const tl_joint_group *g, tl_joint_row *rows, pair_velocity *p,
+                                v8 *pull, uint32_t form, uint32_t n) {
+    int keep = !counts_for_last(step, g);
+    TL_UNROLL
+    for (uint32_t k = 0; k < n && k < TL_LINK_ROWS; k++) {
+        tl_f8 old = tl_f8_load(rows[k].impulse), now = tl_f8_add(old, tl_f8_load(g->x[k]));
+        int kind = kind_in(form, g, k);
+        if (keep) {
+            tl_f8_store(rows[k].impulse, now);
+        }
+        joint_apply(p, &rows[k], kind, tl_f8_sub(now, old));
+        *pull = along_row(*pull, now, &rows[k], kind);
     }
 }
 
@@ -135,24 +163,30 @@ static void apply_impulses(const tl_step *step, uint32_t first, uint32_t last) {
         load_linked_pair(tl_row_velocity(step->h)->f, g, &p);
         v8 pull = v8_zero();
         tl_m8 pulls = tl_m8_zero();
-        for (uint32_t k = 0; k < g->linked; k++) {
+        IN_LINKED_FORM(g, g->fixed, apply_equalities, step, g, rows, &p, &pull);
+        for (uint32_t k = g->fixed; k < g->linked; k++) {
             tl_f8 old = tl_f8_load(rows[k].impulse), now = tl_f8_add(old, tl_f8_load(g->x[k]));
-            int linear = is_linear_row(g->code[k]);
-            if (k >= g->fixed) {
-                tl_f8 outward = tl_f8_mul(range_sign(&rows[k]), now);
-                tl_m8 wrong = tl_m8_and(is_hard(&rows[k]), tl_f8_lt(outward, tl_f8_zero()));
-                now = tl_f8_select(wrong, tl_f8_zero(), now);
-                pulls = tl_m8_or(pulls, wrong);
-            }
+            tl_f8 outward = tl_f8_mul(range_sign(&rows[k]), now);
+            tl_m8 wrong = tl_m8_and(is_hard(&rows[k]), tl_f8_lt(outward, tl_f8_zero()));
+            now = tl_f8_select(wrong, tl_f8_zero(), now);
+            pulls = tl_m8_or(pulls, wrong);
             if (!counts_for_last(step, g)) {
                 tl_f8_store(rows[k].impulse, now);
             }
             joint_apply(&p, &rows[k], row_kind(g, k), tl_f8_sub(now, old));
-            pull = linear ? v8_mad(pull, now, v8_load(rows[k].n[0])) : pull;
+            pull = along_row(pull, now, &rows[k], row_kind(g, k));
         }
         g->far = (g->far & TL_FAR_AGAIN) | (tl_m8_any(pulls) ? (uint32_t)TL_FAR_NOW : 0u);
         note_pull(step, g, tl_f8_sqrt(v8_dot(pull, pull)));
         store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+    }
+}
+
+TL_INLINE void push_rows(const tl_joint_group *g, const tl_joint_row *rows, pair_velocity *p, uint32_t form,
+                         uint32_t n) {
+    TL_UNROLL
+    for (uint32_t k = 0; k < n && k < TL_LINK_ROWS; k++) {
+        joint_apply(p, &rows[k], kind_in(form, g, k), tl_f8_load(g->x[k]));
     }
 }
 
@@ -165,16 +199,14 @@ static void apply_pushes(const tl_step *step, uint32_t first, uint32_t last) {
         }
         pair_velocity p;
         load_linked_pair(tl_row_push(step->h)->f, g, &p);
-        for (uint32_t k = 0; k < g->linked; k++) {
-            joint_apply(&p, &rows[k], row_kind(g, k), tl_f8_load(g->x[k]));
-        }
+        IN_LINKED_FORM(g, g->linked, push_rows, g, rows, &p);
         store_pair(tl_row_push(step->h)->f, g->a, g->b, &p);
     }
 }
 
 static void solve_linkages(const tl_step *step, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; i++) {
-        const tl_linkage *l = &tl_linkages(step->h)[i];
+        tl_linkage *l = &tl_linkages(step->h)[i];
         if ((step->again && !l->far) || (step->skip_exact && l->exact) || (step->waits && l->near)) {
             continue;
         }

@@ -13,11 +13,11 @@ static void live_rows(const tl_header *h, const tl_press *s, uint32_t live[TL_MO
 void tl_press_factor(const tl_header *h, const tl_press *s) {
     uint32_t live[TL_MOST_PRESSED];
     live_rows(h, s, live);
-    ldlt_factor(tl_press_nodes(h) + s->first, tl_press_blocks(h), live, s->count, tl_press_values(h) + s->values);
+    ldlt_factor(tl_press_nodes(h) + s->first, tl_press_blocks(h), live, s->count, tl_press_values(h) + s->values, 0);
 }
 
 void tl_press_solve(const tl_header *h, const tl_press *s) {
     uint32_t live[TL_MOST_PRESSED];
     live_rows(h, s, live);
-    ldlt_solve(tl_press_nodes(h) + s->first, tl_press_blocks(h), live, s->count, tl_press_values(h) + s->values);
+    ldlt_solve(tl_press_nodes(h) + s->first, tl_press_blocks(h), live, s->count, tl_press_values(h) + s->values, 0);
 }

@@ -102,7 +102,9 @@ enum {
                          * along frame a, as others are */
     TL_JOINT_AXES = 2,  /* others are along frame a or tell how it stands to frame b */
     TL_JOINT_A = 4,     /* some body a has a row, */
-    TL_JOINT_B = 8      /* some body b; a side on which none has is left out, unless the group is linked */
+    TL_JOINT_B = 8,     /* some body b; a side on which none has is left out, unless the group is linked */
+    TL_JOINT_TURN = 16, /* some tell how frame b is turned in frame a */
+    TL_JOINT_PLAIN = 32 /* its equalities are three along axes, and then angles alone */
 };
 
 /* joint_group.far: an error is so large that taking it back leaves one; the group is pushed again; errors are so small
@@ -158,6 +160,7 @@ typedef struct tl_linkage {
     /* Of one that is cut into pieces: joints of a piece, cuts (0: it is not cut), groups from, nodes of a piece and
      * then of the cuts, values of the cuts behind those of the pieces */
     uint32_t inner, cuts, first_group, cut, cut_values;
+    uint32_t even; /* as it was factored: rows of each node, if all hold a point and then angles, and no more; else 0 */
 } tl_linkage;
 
 #define TL_MOST_PRESSED 128u
