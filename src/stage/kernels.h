@@ -63,10 +63,6 @@ void tl_linkage_solve_one(const tl_header *h, tl_linkage *l);
 void tl_cuts_factor(const tl_header *h, const tl_linkage *l);
 void tl_cuts_solve(const tl_header *h, const tl_linkage *l);
 
-/* Factors the matrix of a press, and solves it for the right-hand sides in its place, in single floats. */
-void tl_press_factor(const tl_header *h, const tl_press *s);
-void tl_press_solve(const tl_header *h, const tl_press *s);
-
 extern const tl_kernels tl_kernels_scalar;
 #if defined(__SSE2__)
 extern const tl_kernels tl_kernels_sse2;

@@ -37,7 +37,7 @@ static void stands(void **state) {
         tower_of(&world, at, of[k].count, of[k].size, body);
         kit_steps(&world, 600);
         assert_int_equal(kit_counters(&world).contacts_pressed, of[k].count);
-        BELOW(gone_from(&world, at, of[k].count, of[k].size, body), of[k].count > 40 ? 2e-2 : 2e-3);
+        BELOW(gone_from(&world, at, of[k].count, of[k].size, body), of[k].count > 40 ? 2e-3 : 3e-4);
         kit_end(&world);
     }
 }

@@ -70,7 +70,7 @@ static tl_contact_group *open_group(tl_header *h) {
     memset(g->a, 0, sizeof g->a);
     memset(g->b, 0, sizeof g->b);
     memset(g->contact, 0, sizeof g->contact);
-    g->lanes = g->points = g->pressed = g->plane = 0;
+    g->lanes = g->points = g->pressed = g->met = g->plane = 0;
     return g;
 }
 

@@ -169,13 +169,29 @@ static void reverse(tl_pressed *p, uint32_t count) {
     }
 }
 
-/* Whether the masses of the bodies of `count` contacts differ by more than a float can tell apart. */
-static int is_too_unlike(const tl_header *h, const tl_pressed *p, uint32_t count) {
+/* Where the factor of a press of `count` contacts lies, in rows of eight: of a node, as many as it has rows and one
+ * more; of a block, as many as its column's node has. Returns how many floats that takes. */
+static uint32_t place_values(tl_block_node *node, uint32_t count, tl_block *blocks) {
+    uint32_t offset = 0;
+    for (uint32_t j = 0; j < count; j++) {
+        node[j].diagonal = offset;
+        offset += (node[j].rows + 1u) * TL_LANES;
+        for (uint32_t k = 0; k < node[j].blocks; k++) {
+            tl_block *b = &blocks[node[j].first + k];
+            b->values = offset;
+            offset += node[j].rows * TL_LANES;
+        }
+    }
+    return offset;
+}
+
+/* The inverse masses of the bodies of `count` contacts. */
+static spread masses_of(const tl_header *h, const tl_pressed *p, uint32_t count) {
     spread s = {3.0e38f, 0.0f};
     for (uint32_t k = 0; k < 2u * count; k++) {
         widen(&s, tl_row_velocity(h)[p[k / 2u].row[k % 2u]].f[6]);
     }
-    return s.most > MOST_UNLIKE * s.least;
+    return s;
 }
 
 /* Makes presses of what was collected; contacts whose factor has no room stay out of any. */
@@ -194,14 +210,17 @@ static void make_presses(finder *f) {
             node[k].rows = p->rows;
         }
         uint32_t used = tl_block_plan(node, count, ends, tl_press_blocks(h), blocks, room, scratch, &size);
-        uint32_t left = h->capacity[TL_COUNT_PRESSVALUE] - values; /* the last values are read eight at a time */
-        if (used == TL_BLOCK_FREE || size + TL_LANES > left || is_too_unlike(h, tl_pressed_pool(h) + first, count)) {
+        uint32_t left = h->capacity[TL_COUNT_PRESSVALUE] - values;
+        size = used == TL_BLOCK_FREE ? 0u : place_values(node, count, tl_press_blocks(h));
+        spread masses = masses_of(h, tl_pressed_pool(h) + first, count);
+        if (used == TL_BLOCK_FREE || size > left || masses.most > MOST_UNLIKE * masses.least) {
             h->counters.contacts_left += count;
             continue;
         }
         tl_press *s = &tl_presses(h)[h->presses++];
         memset(s, 0, sizeof *s);
         s->first = first, s->count = count, s->values = values;
+        s->alike = !(masses.most > UNLIKE * masses.least);
         blocks += used, values += size;
         for (uint32_t k = 0; k < count; k++) {
             uint32_t place = tl_pressed_pool(h)[first + k].place;

@@ -230,6 +230,17 @@ static inline void relax_contact_group(const tl_step *step, tl_contact_group *g)
     store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
 }
 
+/* What presses have met is done with but for its friction about the normal, which they do not know. */
+static inline int is_done(const tl_contact_group *g) {
+    return g->met == (1u << g->lanes) - 1u && !g->rolls && !g->heard;
+}
+static void relax_twist(const tl_step *step, tl_contact_group *g) {
+    pair_velocity p;
+    load_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+    solve_twist(g, &p, pressure_of(g));
+    store_pair(tl_row_velocity(step->h)->f, g->a, g->b, &p);
+}
+
 #include "stage/solve/planar.inl"
 
 static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
@@ -238,7 +249,9 @@ static void solve_contacts(const tl_step *step, uint32_t first, uint32_t last) {
         if (g->plane) {
             solve_in_plane(step, g);
         } else if (g->pressed) {
-            solve_contact_group(step, g, 1, 1);
+            if (!is_done(g)) {
+                solve_contact_group(step, g, 1, 1);
+            }
         } else if (g->depth & TL_DEPTH_LIFTED) {
             solve_contact_group(step, g, 0, 1);
         } else {
@@ -252,6 +265,8 @@ static void relax_contacts(const tl_step *step, uint32_t first, uint32_t last) {
         tl_contact_group *g = &tl_group_pool(step->h)[i];
         if (g->plane) {
             relax_in_plane(step, g);
+        } else if (is_done(g)) {
+            relax_twist(step, g);
         } else {
             relax_contact_group(step, g);
         }

@@ -2,23 +2,35 @@
  * L D L^T of their matrix. Which hold is found by active sets: a point that would have to pull is let go, one that
  * closes is taken in, and friction beyond its cone slides on it. Where that leads astray, for rows may say nearly the
  * same and quarrel, the way is gone only as far as nothing pulls, and the diagonal is raised, as Levenberg and
- * Marquardt do for least squares (Nocedal and Wright, "Numerical Optimization", 10.3, 16.5). What a few rounds leave,
- * and what the system does not know (friction about the normal, rolling), is left to the sweep over all contacts that
- * follows.
+ * Marquardt do for least squares (Nocedal and Wright, "Numerical Optimization", 10.3, 16.5). It is raised from the
+ * start by as much as what is to be met is fast: the weakest ways of a tall tower to sway, met at once, would ask for
+ * more than its weight can give. What a few rounds leave is left to the sweep over all contacts that follows, and so
+ * is what the system does not know (friction about the normal, rolling).
+ *
+ * What rests is met by the impulses that it has, and then a look at the speeds is all that there is to do. That it
+ * stays so takes care: an impulse that stops a speed is applied again in the next sub-step, as all of them are, and
+ * leaves the speed that there was before the other way round. Were that left to grow until it is worth a round, rounds
+ * would make each other for ever; so after a round all is met that a round can meet.
  *
  * The lanes are the rows of one contact: its points, then its tangents, of which there is one in a plane. */
 
 #define MOST_ROUNDS 8u
 #define LEAST_ROUNDS 2u
 #define MOST_LOOKS 256u   /* contacts in all rounds of a solve: of large presses there are fewer */
-#define SOFT 2e-4f        /* by what share of itself the diagonal is raised when a step begins, */
-#define SOFTER 16.0f      /* how many times more where a way leads astray, */
+#define SOFT_SHARE 0.5f   /* of the fastest row against the load: by so much of itself the diagonal is raised, */
+#define SOFT 2e-4f        /* at most; where a way leads astray by this, */
+#define SOFTER 16.0f      /* how many times more where one does again, */
 #define SOFTEST 0.1f      /* and at most */
+#define LEAST_LOAD 1e-2f  /* m/s */
 #define LEAST_SHARE 0.5f  /* of a way that is to be of use */
-#define AT_REST 5e-5f     /* m/s: rows that all are slower are met */
+#define AT_REST 1e-5f     /* m/s: rows that all are slower are met, */
+#define ROUNDED 1e-6f     /* or than this share of the load, */
+#define LEFT_TWICE 2.0f   /* or, after a round, than so many times what it left, */
+#define LEAST_REST 2e-6f  /* or than this */
 #define CLOSING 1e-4f     /* m/s: from here on a point without an impulse is taken in */
 #define NEAR_SLIDE 0.999f /* of the friction that a sliding contact has */
-#define PRESS_DEPTH 5e-4f /* m: overlap that is left */
+#define PRESS_DEPTH 5e-4f /* m: from here on overlap is taken back, */
+#define LEFT_DEPTH 0.98f  /* to this share of it */
 
 /* --- rows --------------------------------------------------------------------------------------- */
 
@@ -70,87 +82,32 @@ static void fill_rows(const tl_header *h, tl_pressed *p) {
     }
 }
 
+/* m/s: what a contact bore in the last sub-step, as a speed of the lighter body. */
+static float load_of(const tl_header *h, const tl_pressed *p) {
+    float sum = 0.0f;
+    for (uint32_t row = 0; row < p->points; row++) {
+        sum += *impulse_of(h, p, row);
+    }
+    return sum * tl_max(p->mass[0], p->mass[1]);
+}
+
 static void begin_presses(const tl_step *step, uint32_t first, uint32_t last) {
     const tl_header *h = step->h;
     for (uint32_t i = first; i < last; i++) {
         tl_press *s = &tl_presses(h)[i];
+        float load = 0.0f;
         for (uint32_t k = 0; k < s->count; k++) {
-            fill_rows(h, &tl_pressed_pool(h)[s->first + k]);
+            tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
+            fill_rows(h, p);
+            load = tl_max(load, load_of(h, p));
         }
         s->stale = 1u;
-        s->soft = SOFT;
+        s->load = tl_max(load, LEAST_LOAD);
+        s->at_rest = s->rest = tl_max(AT_REST, ROUNDED * s->load);
     }
 }
 
-/* --- the factor --------------------------------------------------------------------------------- */
-
-static inline v8 v8_set1(const float *p) { return v8_of(tl_f8_set1(p[0]), tl_f8_set1(p[1]), tl_f8_set1(p[2])); }
-
-/* What impulses in the rows of q do to the speed of row r of p, through a body that is side t of q and s of p. */
-static inline tl_f8 share_of(const tl_pressed *p, uint32_t r, uint32_t s, const tl_pressed *q, uint32_t t) {
-    const float n[3] = {p->n[0][r], p->n[1][r], p->n[2][r]}, j[3] = {p->j[s][0][r], p->j[s][1][r], p->j[s][2][r]};
-    tl_f8 way = v8_dot(v8_set1(n), v8_load(q->n[0])), turn = v8_dot(v8_set1(j), v8_load(q->j[t][0]));
-    tl_f8 share = tl_f8_mad(tl_f8_mul(tl_f8_set1(p->mass[s]), way), tl_f8_set1(p->turns[s]), turn);
-    return s == t ? share : tl_f8_neg(share);
-}
-
-/* A row that does not hold stands for itself alone. */
-static void fill_diagonal(const tl_pressed *p, float soft, float *d) {
-    float *row = d, lanes[TL_LANES];
-    for (uint32_t i = 0; i < p->rows; row += ++i) {
-        tl_f8_storeu(lanes, tl_f8_add(share_of(p, i, 0, p, 0), share_of(p, i, 1u, p, 1u)));
-        for (uint32_t j = 0; j < i; j++) {
-            row[j] = holds(p, i) && holds(p, j) ? lanes[j] : 0.0f;
-        }
-        row[i] = lanes[i] * (1.0f + soft);
-    }
-}
-
-static void fill_block(const tl_pressed *p, const tl_pressed *q, uint32_t shares, float *v) {
-    const float *end = v + p->rows * q->rows;
-    for (uint32_t r = 0; r < p->rows; r++, v += q->rows) {
-        float lanes[TL_LANES];
-        tl_f8 sum = tl_f8_zero();
-        for (uint32_t i = 0; i < 4u && holds(p, r); i++) {
-            sum = shares >> i & 1u ? tl_f8_add(sum, share_of(p, r, i / 2u, q, i % 2u)) : sum;
-        }
-        sum = tl_f8_and_mask(tl_m8_from_bits(q->holds), sum);
-        if (end - v >= (int)TL_LANES) { /* the next row goes over what is too much */
-            tl_f8_storeu(v, sum);
-        } else {
-            tl_f8_storeu(lanes, sum);
-            memcpy(v, lanes, q->rows * sizeof(float));
-        }
-    }
-}
-
-static void factor_press(const tl_header *h, tl_press *s) {
-    const tl_block_node *node = tl_press_nodes(h) + s->first;
-    const tl_pressed *p = tl_pressed_pool(h) + s->first;
-    float *v = tl_press_values(h) + s->values;
-    for (uint32_t j = 0; j < s->count; j++) {
-        fill_diagonal(&p[j], s->soft, v + node[j].diagonal);
-        for (uint32_t k = 0; k < node[j].blocks; k++) {
-            const tl_block *b = &tl_press_blocks(h)[node[j].first + k];
-            fill_block(&p[b->node], &p[j], b->shares, v + b->values);
-        }
-    }
-    tl_press_factor(h, s);
-    s->stale = 0;
-}
-
-/* The right-hand side and then the solution of a contact. What follows, to eight floats, is left as it is. */
-static inline float *x_of(const tl_header *h, const tl_press *s, uint32_t k) {
-    return tl_press_values(h) + s->values + tl_press_nodes(h)[s->first + k].x;
-}
-static inline void put_x(float *x, const tl_pressed *p, tl_f8 lanes) {
-    tl_m8 rows = tl_m8_from_bits((1u << p->rows) - 1u);
-    tl_f8_storeu(x, tl_f8_select(rows, lanes, tl_f8_loadu(x)));
-}
-/* 0 in rows that do not hold. */
-static inline tl_f8 get_x(const float *x, const tl_pressed *p) {
-    return tl_f8_and_mask(tl_m8_from_bits(p->holds), tl_f8_loadu(x));
-}
+#include "stage/solve/press_factor.inl"
 
 /* --- speeds and impulses ------------------------------------------------------------------------ */
 
@@ -191,27 +148,53 @@ static inline float press_of(const tl_pressed *p) {
     return tl_f8_sum(tl_f8_and_mask(tl_m8_from_bits(point_bits(p)), pushes));
 }
 
+/* m/s: what stays as it is until the speeds are met. */
+static inline tl_f8 bias_of(const tl_step *step, const tl_pressed *p) {
+    tl_f8 gap = gaps_of(step->h, p), ahead = tl_f8_mul(tl_f8_max(gap, tl_f8_zero()), tl_f8_set1(step->inverse_sub));
+    tl_f8 back = drawn_back(step, tl_f8_set1(p->held), gap);
+    return tl_f8_select(tl_m8_from_bits(point_bits(p)), ahead, back);
+}
+
 /* The speeds that the rows have to lose. */
 static inline tl_f8 speeds_to_meet(const tl_header *h, const tl_pressed *p) {
     return tl_f8_add(speeds_of(tl_row_velocity(h), p), tl_f8_load(p->bias));
 }
 
-/* Of the four points of a face one is too many: impulses v, as large as the triangles that the other three make, push
- * nothing. Without them the rest is least; else they would grow by chance until some point has to let go. */
-static void even_out(tl_pressed *p) {
-    uint32_t side = p->turns[0] > 0.0f ? 0u : 1u;
-    talus_vec3 at[4];
-    for (uint32_t k = 0; k < 4u; k++) {
-        at[k] = tl_v(p->j[side][0][k], p->j[side][1][k], p->j[side][2][k]);
+/* Of `bits`, the points that bear. */
+static uint32_t bearing_of(const tl_header *h, const tl_pressed *p, uint32_t bits) {
+    for (uint32_t row = 0; row < p->points; row++) {
+        bits &= bits >> row & 1u && !(*impulse_of(h, p, row) > 0.0f) ? ~(1u << row) : ~0u;
     }
-    talus_vec3 d1 = tl_sub(at[1], at[0]), d2 = tl_sub(at[2], at[0]), d3 = tl_sub(at[3], at[0]);
-    talus_vec3 across = tl_add(tl_cross(d1, d2), tl_cross(d2, d3));
-    float v[4] = {0.0f, tl_dot(tl_cross(d2, d3), across), tl_dot(tl_cross(d3, d1), across),
-                  tl_dot(tl_cross(d1, d2), across)};
-    v[0] = -(v[1] + v[2] + v[3]);
-    float square = 0.0f, along = 0.0f;
+    return bits & point_bits(p);
+}
+
+/* Whether no row of a contact asks for anything: all are at rest, but for points that bear nothing and open. */
+static inline int is_met(const tl_step *step, const tl_pressed *p, tl_f8 rest) {
+    tl_f8 speed = tl_f8_add(speeds_of(tl_row_velocity(step->h), p), bias_of(step, p));
+    uint32_t moves = tl_m8_bits(tl_f8_gt(tl_f8_abs(speed), rest));
+    if (moves) {
+        uint32_t opens = tl_m8_bits(tl_f8_gt(speed, rest)) & point_bits(p);
+        moves = (moves & ~opens) | bearing_of(step->h, p, opens);
+    }
+    return !moves;
+}
+
+static int is_all_met(const tl_step *step, const tl_press *s) {
+    const tl_pressed *p = tl_pressed_pool(step->h) + s->first;
+    tl_f8 rest = tl_f8_set1(s->rest);
+    uint32_t k = 0;
+    while (k < s->count && is_met(step, &p[k], rest)) {
+        k++;
+    }
+    return k == s->count;
+}
+
+/* Four points bear least where none of what they bear is idle; else that would grow by chance until some point has to
+ * let go. */
+static void even_out(tl_pressed *p) {
+    float v[4], square = idle_of(p, v), along = 0.0f;
     for (uint32_t k = 0; k < 4u; k++) {
-        square += v[k] * v[k], along += v[k] * p->impulse[k];
+        along += v[k] * p->impulse[k];
     }
     float share = square > 0.0f ? along / square : 0.0f;
     for (uint32_t k = 0; k < 4u; k++) { /* no further than that none pulls */
@@ -224,17 +207,15 @@ static void even_out(tl_pressed *p) {
     }
 }
 
-/* What stays as it is until the speeds are met, and where it begins. */
-static void begin_to_meet(const tl_step *step, tl_pressed *p) {
+/* Where it begins; `even`: nothing has been factored yet. */
+static void begin_to_meet(const tl_step *step, tl_pressed *p, int even) {
     for (uint32_t row = 0; row < p->rows; row++) {
         p->impulse[row] = *impulse_of(step->h, p, row);
     }
-    if (p->points == 4u) {
+    if (even && p->points == 4u) {
         even_out(p);
     }
-    tl_f8 gap = gaps_of(step->h, p), ahead = tl_f8_mul(tl_f8_max(gap, tl_f8_zero()), tl_f8_set1(step->inverse_sub));
-    tl_f8 back = drawn_back(step, tl_f8_set1(p->held), gap);
-    tl_f8_store(p->bias, tl_f8_select(tl_m8_from_bits(point_bits(p)), ahead, back));
+    tl_f8_store(p->bias, bias_of(step, p));
     float x = p->impulse[p->points], y = p->impulse[p->points + 1u], most = NEAR_SLIDE * p->slide * press_of(p);
     p->fresh = !(most > 0.0f);
     p->slides = !p->fresh && !(x * x + y * y < most * most);
@@ -250,12 +231,12 @@ static void end_meeting(const tl_header *h, const tl_pressed *p) {
 /* Notes where a round starts from, and which rows hold there: those of points that bear or close, and both tangents'
  * unless they slide; of what bore nothing before all that do not open, for under what falls on one another nothing
  * closes but the lowest. Returns whether any of them is not met. */
-static inline int look_at(const tl_header *h, tl_pressed *p, uint32_t *changed) {
+static inline int look_at(const tl_header *h, tl_pressed *p, float rest, uint32_t *changed) {
     tl_f8 impulse = tl_f8_load(p->impulse), speed = speeds_to_meet(h, p);
     tl_f8_store(p->from, impulse);
     tl_f8_store(p->speed, speed);
-    tl_m8 bears = tl_m8_or(tl_f8_gt(impulse, tl_f8_zero()), tl_f8_lt(speed, tl_f8_set1(p->fresh ? AT_REST : -CLOSING)));
-    uint32_t met = tl_m8_bits(tl_f8_lt(tl_f8_abs(speed), tl_f8_set1(AT_REST)));
+    tl_m8 bears = tl_m8_or(tl_f8_gt(impulse, tl_f8_zero()), tl_f8_lt(speed, tl_f8_set1(p->fresh ? rest : -CLOSING)));
+    uint32_t met = tl_m8_bits(tl_f8_le(tl_f8_abs(speed), tl_f8_set1(rest)));
     uint32_t now = tl_m8_bits(bears) & point_bits(p) & ~p->barred;
     now |= p->slides ? 0u : tangent_bits(p);
     *changed |= now ^ p->holds;
@@ -270,29 +251,46 @@ static int look(const tl_header *h, tl_press *s, int wanted) {
     uint32_t changed = 0;
     int moves = 0;
     for (uint32_t k = 0; k < s->count; k++) {
-        moves |= look_at(h, &tl_pressed_pool(h)[s->first + k], &changed);
+        moves |= look_at(h, &tl_pressed_pool(h)[s->first + k], s->rest, &changed);
     }
     s->stale |= changed != 0;
     return moves && (changed || !wanted);
 }
 
+/* m/s: the fastest of the rows that hold or slide, at the last look. */
+static float left_of(const tl_header *h, const tl_press *s) {
+    float lanes[TL_LANES], most = 0.0f;
+    tl_f8 left = tl_f8_zero();
+    for (uint32_t k = 0; k < s->count; k++) {
+        const tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
+        tl_m8 closed = tl_m8_from_bits(p->holds | tangent_bits(p));
+        left = tl_f8_max(left, tl_f8_and_mask(closed, tl_f8_abs(tl_f8_load(p->speed))));
+    }
+    tl_f8_storeu(lanes, left);
+    for (uint32_t i = 0; i < TL_LANES; i++) {
+        most = tl_max(most, lanes[i]);
+    }
+    return most;
+}
+
 /* Impulses that would meet the speeds of the rows that hold. */
 static void find_changes(const tl_header *h, tl_press *s) {
     if (s->stale) {
+        s->soft = tl_max(s->soft, tl_min(SOFT_SHARE * left_of(h, s) / s->load, SOFT));
         factor_press(h, s);
     }
     for (uint32_t k = 0; k < s->count; k++) {
-        const tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
-        put_x(x_of(h, s, k), p, tl_f8_and_mask(tl_m8_from_bits(p->holds), tl_f8_neg(tl_f8_load(p->speed))));
+        tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
+        tl_f8_store(p->x, tl_f8_and_mask(tl_m8_from_bits(p->holds), tl_f8_neg(tl_f8_load(p->speed))));
     }
-    tl_press_solve(h, s);
+    solve_press(h, s);
 }
 
 /* Goes a share of the way that was found. */
 static void go(const tl_header *h, const tl_press *s, float share) {
     for (uint32_t k = 0; k < s->count; k++) {
         tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
-        add_impulses(h, p, tl_f8_mul(tl_f8_set1(share), get_x(x_of(h, s, k), p)));
+        add_impulses(h, p, tl_f8_mul(tl_f8_set1(share), tl_f8_load(p->x)));
     }
 }
 
@@ -356,11 +354,10 @@ static float free_share(const tl_header *h, const tl_press *s) {
     float share = 1.0f;
     for (uint32_t k = 0; k < s->count; k++) {
         tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
-        const float *change = x_of(h, s, k);
         for (uint32_t row = 0; row < p->points; row++) {
-            if (holds(p, row) && change[row] < 0.0f) {
+            if (holds(p, row) && p->x[row] < 0.0f) {
                 p->barred |= p->from[row] > 0.0f ? 0u : 1u << row;
-                share = tl_min(share, p->from[row] / -change[row]);
+                share = tl_min(share, p->from[row] / -p->x[row]);
             }
         }
     }
@@ -372,7 +369,7 @@ static void go_carefully(const tl_header *h, tl_press *s) {
     go_back(h, s, 0.0f);
     go(h, s, free_share(h, s));
     let_go(h, s);
-    s->soft = tl_min(s->soft * SOFTER, SOFTEST);
+    s->soft = tl_max(tl_min(s->soft * SOFTER, SOFTEST), SOFT);
     s->stale = 1u;
 }
 
@@ -388,43 +385,86 @@ static void run_round(const tl_header *h, tl_press *s, int *done) {
     }
 }
 
-static void press_velocities(const tl_step *step, uint32_t first, uint32_t last) {
+/* Returns whether nothing is left that a sweep could do. */
+static int meet(const tl_step *step, tl_press *s) {
     const tl_header *h = step->h;
-    for (uint32_t i = first; i < last; i++) {
-        tl_press *s = &tl_presses(h)[i];
-        tl_pressed *p = tl_pressed_pool(h) + s->first;
-        uint32_t rounds = MOST_LOOKS / s->count, round = 0;
-        rounds = rounds < LEAST_ROUNDS ? LEAST_ROUNDS : rounds > MOST_ROUNDS ? MOST_ROUNDS : rounds;
+    tl_pressed *p = tl_pressed_pool(h) + s->first;
+    uint32_t rounds = MOST_LOOKS / s->count, round = 0;
+    rounds = rounds < LEAST_ROUNDS ? LEAST_ROUNDS : rounds > MOST_ROUNDS ? MOST_ROUNDS : rounds;
+    for (uint32_t k = 0; k < s->count; k++) {
+        begin_to_meet(step, &p[k], s->stale != 0);
+    }
+    int done = 0, more;
+    while ((more = look(h, s, done)) && round < rounds) {
+        run_round(h, s, &done);
+        round++;
+    }
+    float left = left_of(h, s);
+    if (round > 0) {
+        s->rest = tl_max(tl_min(LEFT_TWICE * left, s->at_rest), LEAST_REST);
         for (uint32_t k = 0; k < s->count; k++) {
-            begin_to_meet(step, &p[k]);
-        }
-        for (int done = 0; round < rounds && look(h, s, done); round++) {
-            run_round(h, s, &done);
-        }
-        for (uint32_t k = 0; k < s->count && round; k++) {
             end_meeting(h, &p[k]);
         }
+    }
+    return !more && left <= s->at_rest;
+}
+
+static void note_met(const tl_header *h, tl_press *s, uint32_t met) {
+    for (uint32_t k = 0; k < s->count && met != s->met; k++) {
+        const tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
+        uint32_t lane = 1u << p->place % TL_LANES, *of_group = &group_of(h, p)->met;
+        *of_group = met ? *of_group | lane : *of_group & ~lane;
+    }
+    s->met = met;
+}
+
+static void press_velocities(const tl_step *step, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; i++) {
+        tl_press *s = &tl_presses(step->h)[i];
+        int met = is_all_met(step, s) || meet(step, s);
+        note_met(step->h, s, met && s->alike); /* what is wedged between others is not to be jammed for good */
     }
 }
 
 /* --- errors ------------------------------------------------------------------------------------- */
 
-/* Fills in how far the points that hold are to be parted; returns whether any is. */
-static int read_depths(const tl_step *step, const tl_press *s) {
-    const tl_header *h = step->h;
-    float budget = h->settings.error_budget;
-    tl_f8 zero = tl_f8_zero(), most = tl_f8_set1(h->settings.push_speed * step->sub);
-    tl_f8 left = tl_f8_set1(budget > 0.0f ? tl_min(PRESS_DEPTH, 0.5f * budget) : PRESS_DEPTH);
-    tl_m8 any = tl_m8_zero();
+/* m: how far points are apart after what has been displaced by now. */
+static inline tl_f8 pushed_gaps_of(const tl_header *h, const tl_pressed *p) {
+    return tl_f8_add(gaps_of(h, p), speeds_of(tl_row_push(h), p));
+}
+
+/* Whether points that bear overlap by more than `most` (m). */
+static int is_deep(const tl_header *h, const tl_press *s, float most) {
+    tl_f8 least = tl_f8_set1(-most);
     for (uint32_t k = 0; k < s->count; k++) {
         const tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
-        tl_f8 gap = tl_f8_add(gaps_of(h, p), speeds_of(tl_row_push(h), p));
-        tl_f8 depth = tl_f8_min(tl_f8_max(tl_f8_sub(tl_f8_neg(gap), left), zero), most);
-        depth = tl_f8_and_mask(tl_m8_from_bits(p->holds & point_bits(p)), depth);
-        any = tl_m8_or(any, tl_f8_gt(depth, zero));
-        put_x(x_of(h, s, k), p, depth);
+        uint32_t deep = tl_m8_bits(tl_f8_lt(pushed_gaps_of(h, p), least)) & point_bits(p);
+        if (deep && bearing_of(h, p, deep)) {
+            return 1;
+        }
     }
-    return tl_m8_any(any);
+    return 0;
+}
+
+/* What bears is what holds where nothing has been factored yet. */
+static void hold_what_bears(const tl_header *h, tl_press *s) {
+    for (uint32_t k = 0; k < s->count; k++) {
+        tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
+        p->holds = bearing_of(h, p, point_bits(p)) | tangent_bits(p);
+    }
+    factor_press(h, s);
+}
+
+/* Fills in how far the points that hold are to be parted until they overlap by `left` (m). */
+static void read_depths(const tl_step *step, const tl_press *s, float left) {
+    const tl_header *h = step->h;
+    tl_f8 zero = tl_f8_zero(), most = tl_f8_set1(h->settings.push_speed * step->sub);
+    for (uint32_t k = 0; k < s->count; k++) {
+        tl_pressed *p = &tl_pressed_pool(h)[s->first + k];
+        tl_f8 depth = tl_f8_sub(tl_f8_neg(pushed_gaps_of(h, p)), tl_f8_set1(left));
+        depth = tl_f8_min(tl_f8_max(depth, zero), most);
+        tl_f8_store(p->x, tl_f8_and_mask(tl_m8_from_bits(p->holds & point_bits(p)), depth));
+    }
 }
 
 static inline float dot3(const float *a, const float *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -454,7 +494,7 @@ static uint32_t sum_displacements(const tl_header *h, const tl_press *s, displac
             memset(&of[ends], 0, sizeof of[ends]);
         }
         of[end].row = p->row[side];
-        push_side(of[end].d, p, side, get_x(x_of(h, s, i / 2u), p));
+        push_side(of[end].d, p, side, tl_f8_load(p->x));
     }
     return ends;
 }
@@ -463,12 +503,18 @@ static uint32_t sum_displacements(const tl_header *h, const tl_press *s, displac
 static void press_errors(const tl_step *step, uint32_t first, uint32_t last) {
     const tl_header *h = step->h;
     displacement of[TL_MOST_PRESSED + 1u];
+    float budget = h->settings.error_budget, left = budget > 0.0f ? tl_min(PRESS_DEPTH, 0.5f * budget) : PRESS_DEPTH;
     for (uint32_t i = first; i < last; i++) {
         tl_press *s = &tl_presses(h)[i];
-        if (s->stale || !read_depths(step, s)) {
+        int unsettled = s->stale && s->soft > 0.0f; /* what holds has changed since it was factored, or quarrels */
+        if (unsettled || !is_deep(h, s, left)) {
             continue;
         }
-        tl_press_solve(h, s);
+        if (s->stale) {
+            hold_what_bears(h, s);
+        }
+        read_depths(step, s, LEFT_DEPTH * left);
+        solve_press(h, s);
         uint32_t ends = sum_displacements(h, s, of);
         float most = h->settings.push_speed * step->sub, way = most;
         for (uint32_t k = 0; k < ends; k++) {

@@ -49,9 +49,9 @@ typedef struct tl_contact_group {
     uint32_t heard;             /* whether any lane has events to tell */
     uint32_t depth;             /* TL_DEPTH_* */
     uint32_t struck;            /* whether any lane bounced in the last sweep */
-    uint32_t pressed;           /* bits of lanes that are in a press */
+    uint32_t pressed, met;      /* bits of lanes that are in a press, and in one whose rows all are met */
     uint32_t plane;             /* the axis across which all bodies stay, plus one; 0 if they need not */
-    uint32_t reserved[7];       /* lanes are aligned */
+    uint32_t reserved[6];       /* lanes are aligned */
     float deepest[TL_LANES];    /* m: overlap when the step began, of a lane's deepest point */
     float normal[3][TL_LANES];  /* from a to b */
     float tangent[3][TL_LANES]; /* the second tangent is normal x tangent */
@@ -183,6 +183,7 @@ typedef struct tl_pressed {
     float impulse[TL_LANES]; /* N s */
     float from[TL_LANES];    /* N s, where a round began, */
     float speed[TL_LANES];   /* m/s, and what it had to meet */
+    float x[TL_LANES];       /* m/s or m: what is to be solved for; then the solution: N s or kg m */
 } tl_pressed;
 
 /* Contacts that hang together through bodies that can be moved. */
@@ -190,7 +191,11 @@ typedef struct tl_press {
     uint32_t first, count; /* in pressed_pool and press_nodes */
     uint32_t values;       /* in press_values */
     uint32_t stale;        /* it is to be factored anew */
+    uint32_t alike;        /* its masses are: it is of towers */
+    uint32_t met;          /* it is, and its rows are met: sweeps have nothing to do but friction about normals */
     float soft;            /* by what share its diagonal is raised */
+    float load;            /* m/s: the most that a contact bore in the last sub-step, as a speed of the lighter body */
+    float at_rest, rest;   /* m/s: rows that all are slower are met, at the most and now */
 } tl_press;
 
 #endif

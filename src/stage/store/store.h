@@ -26,7 +26,7 @@ typedef enum tl_column_id {
 
 /* The same of presses, a contact in them. */
 #define TL_PRESS_BLOCKS 4u
-#define TL_PRESS_VALUES 192u
+#define TL_PRESS_VALUES 256u
 
 /* Words of packed definitions, a body and a shape: more than bodies that differ in mass and shapes in size take. */
 #define TL_DEFINITION_WORDS 24u
