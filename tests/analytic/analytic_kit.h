@@ -109,6 +109,12 @@ static inline void move_to_scalar(const talus_world *world, talus_world *other) 
     kit_free(snapshot);
 }
 
+/* Two worlds that are the same stay so. */
+static inline void step_alike(talus_world *world, talus_world *other) {
+    step(world), step(other);
+    assert_true(talus_world_hash(world) == talus_world_hash(other));
+}
+
 static inline talus_joint join(talus_world *world, const talus_joint_def *def) {
     talus_joint joint;
     OK(talus_joint_create(world, def, &joint));

@@ -246,8 +246,7 @@ static void restored(void **state) {
             OK(talus_body_set_locks(&world, body[i / 6], locks));
             OK(talus_body_set_locks(&other, body[i / 6], locks));
         }
-        kit_steps(&world, 1), kit_steps(&other, 1);
-        assert_true(talus_world_hash(&world) == talus_world_hash(&other));
+        step_alike(&world, &other);
         planar += kit_counters(&world).contacts_planar;
     }
     assert_true(planar > 90);

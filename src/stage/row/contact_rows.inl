@@ -17,7 +17,7 @@
 /* The spring of a contact at rest is as deep as its load asks for: under twenty boxes, nineteen times as deep as under
  * one. Beyond LIFT_DEPTH nearly all of that is taken off again: the overlap counts as deeper than it is by a lift,
  * which goes towards what the load asks for at LIFT_RATE. That is slow, for what follows a load behind its swing feeds
- * the swing: twenty boxes on each other lose it at 2.6/s, more boxes by their number's square slower. */
+ * the swing, and a tall stack loses that slowly. */
 #define LIFT_DEPTH 2.5e-4f /* m */
 #define LIFT_SHARE 0.95f
 #define LIFT_RATE 0.5f   /* 1/s */
