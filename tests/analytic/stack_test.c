@@ -21,7 +21,7 @@ static talus_world stacked(int count, int sleeps, talus_body *body) {
     return world;
 }
 
-/* Boxes on each other go back to where they were put but for the depths, to 5 %, by exp(-t / 2 s); on their way they
+/* Boxes on each other go back to where they were put but for the depths, to 5 % in twenty seconds; on their way they
  * stay upright and come to rest. Twenty are 6.2 mm lower in the end. */
 static void stack_of(int count, int steps) {
     talus_body body[20];
@@ -40,9 +40,9 @@ static void stack_of(int count, int steps) {
 
 static void stack_stands(void **state) {
     (void)state;
-    stack_of(2, 900);
-    stack_of(10, 900);
-    stack_of(20, 900);
+    stack_of(2, 1200);
+    stack_of(10, 1200);
+    stack_of(20, 1200);
 }
 
 /* Faces of more points than four, each turned a little on the one below: prisms of six corners, and cylinders. They
@@ -95,8 +95,8 @@ static void round_faces_rest(void **state) {
     stack_of_round(1);
 }
 
-/* Eighteen layers of three planks, each across the one below: struck, the tower sways at one hertz, and not more and
- * more. */
+/* Eighteen layers of three planks, each across the one below: struck, the tower sways at one hertz, and less and less.
+ */
 static void swaying_planks(void **state) {
     (void)state;
     talus_world_def def = talus_world_def_default();
@@ -120,7 +120,7 @@ static void swaying_planks(void **state) {
         last = step >= 1680 ? fmaxf(last, speed) : last;
     }
     assert_true(first > 0.005f); /* m/s */
-    assert_true(last < 1.1f * first);
+    assert_true(last < 0.25f * first);
     kit_end(&world);
 }
 

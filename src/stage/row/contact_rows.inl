@@ -16,11 +16,13 @@
 
 /* The spring of a contact at rest is as deep as its load asks for: under twenty boxes, nineteen times as deep as under
  * one. Beyond LIFT_DEPTH nearly all of that is taken off again: the overlap counts as deeper than it is by a lift,
- * which goes towards what the load asks for at LIFT_RATE. That is slow, for what follows a load behind its swing feeds
- * the swing, and a tall stack loses that slowly. */
+ * which goes towards what the load asks for. What follows a load behind its swing feeds the swing, the more the faster
+ * it follows: at 1/s all the time, a tower of planks that was struck swings more and more. It is fast on its way, and
+ * slow where it has arrived. */
 #define LIFT_DEPTH 2.5e-4f /* m */
 #define LIFT_SHARE 0.95f
-#define LIFT_RATE 0.5f   /* 1/s */
+#define LIFT_RATE 1.0f   /* 1/s, of a lift that is far from it */
+#define LIFT_NEAR 0.3f   /* of that rate is left where it is near */
 #define LEAST_LIFT 1e-7f /* m: less is none */
 #define FACE_POINTS 3u   /* that a face rests on, in a plane one fewer; what has fewer may roll */
 
@@ -240,7 +242,9 @@ static void prepare_rest(const tl_step *step, tl_contact_group *g, tl_f8 lift) {
     tl_f8_store(g->over, tl_f8_select(rests, tl_f8_set1(FACE_OVER), one));
     tl_f8 wanted = tl_f8_mul(tl_f8_sub(least, tl_f8_set1(LIFT_DEPTH)), tl_f8_set1(LIFT_SHARE));
     wanted = tl_f8_and_mask(rests, tl_f8_max(tl_f8_min(wanted, tl_f8_set1(PUSH_DEPTH)), zero));
-    lift = tl_f8_mad(lift, tl_f8_set1(LIFT_RATE * step->dt), tl_f8_sub(wanted, lift));
+    tl_f8 way = tl_f8_sub(wanted, lift), whole = tl_f8_max(tl_f8_max(wanted, lift), tl_f8_set1(LEAST_LIFT));
+    tl_f8 far = tl_f8_max(tl_f8_div(tl_f8_abs(way), whole), tl_f8_set1(LIFT_NEAR));
+    lift = tl_f8_mad(lift, tl_f8_mul(tl_f8_set1(LIFT_RATE * step->dt), far), way);
     lift = tl_f8_min(lift, least);
     tl_m8 any = tl_f8_gt(lift, tl_f8_set1(LEAST_LIFT));
     tl_f8_store(g->lift, tl_f8_and_mask(any, lift));

@@ -220,6 +220,7 @@ static void make_presses(finder *f) {
         tl_press *s = &tl_presses(h)[h->presses++];
         memset(s, 0, sizeof *s);
         s->first = first, s->count = count, s->values = values;
+        s->rings = count > ends;
         s->alike = !(masses.most > UNLIKE * masses.least);
         blocks += used, values += size;
         for (uint32_t k = 0; k < count; k++) {

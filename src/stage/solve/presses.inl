@@ -102,6 +102,7 @@ static void begin_presses(const tl_step *step, uint32_t first, uint32_t last) {
             load = tl_max(load, load_of(h, p));
         }
         s->stale = 1u;
+        s->soft = s->rings ? SOFT : 0.0f;
         s->load = tl_max(load, LEAST_LOAD);
         s->at_rest = s->rest = tl_max(AT_REST, ROUNDED * s->load);
     }
@@ -207,7 +208,7 @@ static void even_out(tl_pressed *p) {
     }
 }
 
-/* Where it begins; `even`: nothing has been factored yet. */
+/* Where it begins; `even`: nothing has been factored yet, or there are rings. */
 static void begin_to_meet(const tl_step *step, tl_pressed *p, int even) {
     for (uint32_t row = 0; row < p->rows; row++) {
         p->impulse[row] = *impulse_of(step->h, p, row);
@@ -392,7 +393,7 @@ static int meet(const tl_step *step, tl_press *s) {
     uint32_t rounds = MOST_LOOKS / s->count, round = 0;
     rounds = rounds < LEAST_ROUNDS ? LEAST_ROUNDS : rounds > MOST_ROUNDS ? MOST_ROUNDS : rounds;
     for (uint32_t k = 0; k < s->count; k++) {
-        begin_to_meet(step, &p[k], s->stale != 0);
+        begin_to_meet(step, &p[k], s->stale || s->rings);
     }
     int done = 0, more;
     while ((more = look(h, s, done)) && round < rounds) {

@@ -192,6 +192,7 @@ typedef struct tl_press {
     uint32_t values;       /* in press_values */
     uint32_t stale;        /* it is to be factored anew */
     uint32_t alike;        /* its masses are: it is of towers */
+    uint32_t rings;        /* its contacts are more than its bodies: some bear what others could */
     uint32_t met;          /* it is, and its rows are met: sweeps have nothing to do but friction about normals */
     float soft;            /* by what share its diagonal is raised */
     float load;            /* m/s: the most that a contact bore in the last sub-step, as a speed of the lighter body */
