@@ -121,6 +121,27 @@ static inline talus_joint join(talus_world *world, const talus_joint_def *def) {
     return joint;
 }
 
+/* Turns x onto z: frames' x is the hinge or the slide. */
+static inline talus_quat x_to_z(void) {
+    talus_quat q = {0.0f, -0.70710678f, 0.0f, 0.70710678f};
+    return q;
+}
+
+/* A ball joint or a hinge along z, at a point of the world where both bodies are unturned; index 0 is the world. */
+static inline talus_joint pin(talus_world *world, talus_body a, talus_body b, talus_vec3 at, int hinge) {
+    talus_joint_def def = talus_joint_def_default();
+    hinge ? talus_joint_make_revolute(&def) : talus_joint_make_ball(&def);
+    def.a = a, def.b = b;
+    talus_body ends[2] = {a, b};
+    for (int i = 0; i < 2; i++) {
+        talus_vec3 from = ends[i].index ? kit_place(world, ends[i]) : kit_vec(0.0f, 0.0f, 0.0f);
+        talus_pose *frame = i ? &def.frame_b : &def.frame_a;
+        frame->position = kit_vec(at.x - from.x, at.y - from.y, at.z - from.z);
+        frame->rotation = hinge ? x_to_z() : frame->rotation;
+    }
+    return join(world, &def);
+}
+
 /* v turned by q, in double. */
 static inline void turned(talus_quat q, const double v[3], double out[3]) {
     const double u[3] = {(double)q.x, (double)q.y, (double)q.z}, w = (double)q.w;

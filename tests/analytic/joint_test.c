@@ -5,10 +5,6 @@ static talus_quat x_to_y(void) {
     talus_quat q = {0.0f, 0.0f, 0.70710678f, 0.70710678f};
     return q;
 }
-static talus_quat x_to_z(void) {
-    talus_quat q = {0.0f, -0.70710678f, 0.0f, 0.70710678f};
-    return q;
-}
 static talus_joint_def revolute_z(talus_body body) {
     talus_joint_def def = talus_joint_def_default();
     talus_joint_make_revolute(&def);

@@ -1,25 +1,6 @@
 /* Joints that hang together: rigid, whatever hangs on them. */
 #include "analytic_kit.h"
 
-/* A ball joint or, about an axis, a hinge at a point of the world where both bodies are unturned. */
-static talus_joint pin(talus_world *world, talus_body a, talus_body b, talus_vec3 at, int hinge) {
-    talus_joint_def def = talus_joint_def_default();
-    hinge ? talus_joint_make_revolute(&def) : talus_joint_make_ball(&def);
-    def.a = a, def.b = b;
-    talus_body ends[2] = {a, b};
-    for (int i = 0; i < 2; i++) {
-        talus_vec3 from = ends[i].index ? kit_place(world, ends[i]) : kit_vec(0.0f, 0.0f, 0.0f);
-        talus_pose *frame = i ? &def.frame_b : &def.frame_a;
-        frame->position = kit_vec(at.x - from.x, at.y - from.y, at.z - from.z);
-        if (hinge) { /* x onto z */
-            frame->rotation.y = -0.70710678f, frame->rotation.w = 0.70710678f;
-        }
-    }
-    talus_joint joint;
-    OK(talus_joint_create(world, &def, &joint));
-    return joint;
-}
-
 /* Twenty links of 1 kg and a ball of 100 kg, let go level. Links lie apart from each other and do not collide. */
 static void hang_chain(talus_world *world, float z, int links, talus_body *ball) {
     talus_body before = {0, 0};

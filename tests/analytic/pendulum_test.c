@@ -18,10 +18,6 @@ static talus_body rod(talus_world *world, double a, double length, float mass) {
     return body;
 }
 /* The hinge's axis is the frames' x; turned to the world's z here. */
-static talus_quat x_to_z(void) {
-    talus_quat q = {0.0f, -0.70710678f, 0.0f, 0.70710678f};
-    return q;
-}
 static void hinge(talus_world *world, talus_body a, talus_vec3 at_a, talus_body b, talus_vec3 at_b, int ball) {
     talus_joint_def def = talus_joint_def_default();
     if (ball) {

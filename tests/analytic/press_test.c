@@ -130,8 +130,7 @@ static void wheel_amid_balls(void **state) {
     talus_joint_make_revolute(&def);
     def.b = wheel;
     def.frame_a.position = kit_vec(0.0f, 1.6f, 0.0f);
-    def.frame_a.rotation.y = def.frame_b.rotation.y = -0.70710678f; /* x onto z */
-    def.frame_a.rotation.w = def.frame_b.rotation.w = 0.70710678f;
+    def.frame_a.rotation = def.frame_b.rotation = x_to_z();
     def.angular_drive[0].enabled = 1;
     def.angular_drive[0].velocity_target = 5.0f, def.angular_drive[0].damping = 1e6f;
     def.angular_drive[0].max_force = 5000.0f;

@@ -86,12 +86,16 @@ typedef struct rows8 {
 } rows8;
 
 /* Forces, damping, and the impulses of the last sub-step. */
+TL_INLINE void speed_up_of(tl_f8 h, int first_substep, tl_f8 force, tl_f8 damping, tl_f8 *velocity, tl_f8 *before) {
+    tl_f8 warm = first_substep ? *before : tl_f8_sub(*velocity, *before);
+    *before = cut(tl_f8_mul(tl_f8_mad(*velocity, h, force), damping));
+    *velocity = tl_f8_add(*before, warm);
+}
+
 TL_INLINE void speed_up(const tl_step *step, rows8 *r, int first_substep) {
-    tl_f8 h = tl_f8_set1(step->sub), *v = r->velocity, *b = r->before;
     for (int k = 0; k < 6; k++) {
-        tl_f8 warm = first_substep ? b[k] : tl_f8_sub(v[k], b[k]);
-        b[k] = cut(tl_f8_mul(tl_f8_mad(v[k], h, r->force[k]), r->force[k < 3 ? 6 : 7]));
-        v[k] = tl_f8_add(b[k], warm);
+        tl_f8 damping = r->force[k < 3 ? 6 : 7];
+        speed_up_of(tl_f8_set1(step->sub), first_substep, r->force[k], damping, &r->velocity[k], &r->before[k]);
     }
 }
 
@@ -103,11 +107,12 @@ static void velocity(const tl_step *step, uint32_t first, uint32_t last) {
     const tl_m8 linear = tl_m8_from_bits(0x07u), speeds = tl_m8_from_bits(0x3fu);
     const uint32_t used = step->h->awake_bodies + 1u;
     for (uint32_t i = first; i < last && i < used; i++) {
-        tl_f8 v = tl_f8_load(velocities[i].f), b = tl_f8_load(befores[i].f), f = tl_f8_load(forces[i].f);
+        const tl_f8 v = tl_f8_load(velocities[i].f), b = tl_f8_load(befores[i].f), f = tl_f8_load(forces[i].f);
         tl_f8 damping = tl_f8_select(linear, tl_f8_set1(forces[i].f[6]), tl_f8_set1(forces[i].f[7]));
-        tl_f8 warm = step->first_substep ? b : tl_f8_sub(v, b), now = cut(tl_f8_mul(tl_f8_mad(v, h, f), damping));
-        tl_f8_store(befores[i].f, tl_f8_select(speeds, now, b));
-        tl_f8_store(velocities[i].f, tl_f8_select(speeds, tl_f8_add(now, warm), v));
+        tl_f8 now = v, before = b;
+        speed_up_of(h, step->first_substep, f, damping, &now, &before);
+        tl_f8_store(befores[i].f, tl_f8_select(speeds, before, b));
+        tl_f8_store(velocities[i].f, tl_f8_select(speeds, now, v));
     }
 }
 

@@ -24,7 +24,8 @@ void tl_joint_group_add(const tl_step *step, tl_joint_group *g, uint32_t joint);
 #define TL_LINKAGE_READY 0xfffffffeu /* its group is made */
 #define TL_LINKAGE_ALONE 0xfffffffcu /* it is in none, and exact */
 #define TL_LINKAGE_APART 0xfffffffdu /* while they are looked for: with others, none of which is to be linked */
-#define TL_LINKAGE_LOOSE 0xfffffffbu /* with others, for all of which there is no room */
+#define TL_LINKAGE_LOOSE                                                                                               \
+    0xfffffffbu /* with others, for all of which there is no room, or in rings that are torn or whirl */
 
 /* How many rows of a joint are solved with the linkage that it is in: equalities, then ranges. */
 uint32_t tl_linked_rows(const tl_joint_record *j);

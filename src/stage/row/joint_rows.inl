@@ -294,28 +294,7 @@ static inline int row_kind(const tl_joint_group *g, uint32_t k) {
     return is_linear_row(g->code[k]) ? ROW_LINEAR : ROW_ANGULAR;
 }
 
-/* Calls f(..., form, rows). */
-#define IN_FORM(g, f, ...)                                                                                             \
-    do {                                                                                                               \
-        switch (form_of(g, (g)->fixed)) {                                                                              \
-        case FORM_OF(3u, FORM_WORLD):                                                                                  \
-            f(__VA_ARGS__, FORM_WORLD, 3u);                                                                            \
-            break;                                                                                                     \
-        case FORM_OF(3u, FORM_FRAME):                                                                                  \
-            f(__VA_ARGS__, FORM_FRAME, 3u);                                                                            \
-            break;                                                                                                     \
-        case FORM_OF(5u, FORM_WORLD):                                                                                  \
-            f(__VA_ARGS__, FORM_WORLD, 5u);                                                                            \
-            break;                                                                                                     \
-        case FORM_OF(5u, FORM_FRAME):                                                                                  \
-            f(__VA_ARGS__, FORM_FRAME, 5u);                                                                            \
-            break;                                                                                                     \
-        default:                                                                                                       \
-            f(__VA_ARGS__, FORM_ANY, (g)->fixed);                                                                      \
-        }                                                                                                              \
-    } while (0)
-
-/* The same for linked joints, whose points are held along the axes of the world. */
+/* Calls f(..., form, rows) for linked joints, whose points are held along the axes of the world. */
 #define IN_LINKED_FORM(g, rows, f, ...)                                                                                \
     do {                                                                                                               \
         switch (form_of(g, rows)) {                                                                                    \
@@ -327,6 +306,21 @@ static inline int row_kind(const tl_joint_group *g, uint32_t k) {
             break;                                                                                                     \
         default:                                                                                                       \
             f(__VA_ARGS__, FORM_ANY, rows);                                                                            \
+        }                                                                                                              \
+    } while (0)
+
+/* The same for all joints. */
+#define IN_FORM(g, f, ...)                                                                                             \
+    do {                                                                                                               \
+        switch (form_of(g, (g)->fixed)) {                                                                              \
+        case FORM_OF(3u, FORM_FRAME):                                                                                  \
+            f(__VA_ARGS__, FORM_FRAME, 3u);                                                                            \
+            break;                                                                                                     \
+        case FORM_OF(5u, FORM_FRAME):                                                                                  \
+            f(__VA_ARGS__, FORM_FRAME, 5u);                                                                            \
+            break;                                                                                                     \
+        default:                                                                                                       \
+            IN_LINKED_FORM(g, (g)->fixed, f, __VA_ARGS__);                                                             \
         }                                                                                                              \
     } while (0)
 

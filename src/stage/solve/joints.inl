@@ -8,9 +8,9 @@
 #define NEAR_AWAY 5e-6f
 #define NEAR_TURNED 5e-5f
 
-/* Joints that hang together in more than there is room to solve at once, as a net's, are damped springs instead: what
- * their passes leave, taken back without a speed, would be work done for nothing, and the net would seethe. The turn in
- * a sub-step, in radians, and the damping ratio. */
+/* Joints that hang together in more than there is room to solve at once, as a net's, or in rings that are torn or
+ * whirl, are damped springs instead: what their passes leave, taken back without a speed, would be work done for
+ * nothing, and a net would seethe. The turn in a sub-step, in radians, and the damping ratio. */
 #define LOOSE_TURN 1.5708f
 #define LOOSE_DAMPING 2.0f
 

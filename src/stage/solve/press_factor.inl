@@ -51,7 +51,7 @@ static void stiffen_idle(const tl_pressed *p, float *rows) {
 }
 
 /* A row that does not hold stands for itself alone. */
-static void fill_diagonal(const tl_pressed *p, float raise, int stiffens, float *rows) {
+static void fill_diagonal(const tl_pressed *p, float raise, float *rows) {
     tl_m8 held = tl_m8_from_bits(p->holds);
     for (uint32_t i = 0; i < p->rows; i++) {
         float *row = rows + i * TL_LANES, own;
@@ -59,9 +59,6 @@ static void fill_diagonal(const tl_pressed *p, float raise, int stiffens, float 
         own = row[i] * raise;
         tl_f8_store(row, holds(p, i) ? tl_f8_and_mask(held, tl_f8_load(row)) : tl_f8_zero());
         row[i] = own;
-    }
-    if (stiffens) {
-        stiffen_idle(p, rows);
     }
 }
 
@@ -187,7 +184,10 @@ static void factor_press(const tl_header *h, tl_press *s) {
     const tl_pressed *p = tl_pressed_pool(h) + s->first;
     float *v = tl_press_values(h) + s->values, raise = 1.0f + PRESS_RAISE + s->soft;
     for (uint32_t j = 0; j < s->count; j++) {
-        fill_diagonal(&p[j], raise, !s->rings, v + node[j].diagonal);
+        fill_diagonal(&p[j], raise, v + node[j].diagonal);
+        if (!s->rings) {
+            stiffen_idle(&p[j], v + node[j].diagonal);
+        }
         for (uint32_t k = 0; k < node[j].blocks; k++) {
             const tl_block *b = &blocks[node[j].first + k];
             fill_block(&p[j], &p[b->node], b->shares, v + b->values);

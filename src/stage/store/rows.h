@@ -122,7 +122,7 @@ typedef struct tl_joint_group {
     uint32_t far;                /* linked: TL_FAR_* */
     uint32_t exact;              /* one solve of its velocities in a sub-step leaves nothing to solve */
     uint32_t needs;              /* TL_JOINT_* */
-    uint32_t gives;              /* linked: some lane has `soft`; else: for want of room equalities are springs */
+    uint32_t gives;              /* linked: some lane has `soft`; else: equalities are springs, for they are loose */
     uint32_t code[TL_JOINT_ROWS];
     float pa[3][TL_LANES], qa[4][TL_LANES]; /* the joint's frame in a's mass frame */
     float pb[3][TL_LANES], qb[4][TL_LANES];
